@@ -5,8 +5,7 @@
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
 //     build/hunt/hunt --replay "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2"
 //
-// Each miss is one line: the error over the allowed error, the result that missed, and the sequence, as --replay reads it. The
-// last lines are a table by law and the sums. Ends with 1 if a step missed.
+// Each miss is one line, with the sequence as --replay reads it. The last line has the sums. Ends with 1 if a step missed.
 #include <getopt.h>
 #include <math.h>
 #include <pthread.h>
@@ -19,20 +18,14 @@
 #include "scenes.h"
 #include "trial.h"
 
-enum { MOST_JOBS = 64, LAWS = 4 };
-static const double NEARLY_NONE = 1e-9; // m/s, across
+enum { MOST_JOBS = 64 };
 
 typedef struct {
     double seed, scenes, minutes, jobs;
     double minimize; // misses that are made plain, at most
-    bool plane, near_line;
+    Kind kind;
     const char *replay, *file;
 } Options;
-
-typedef struct {
-    long steps, misses;
-    double worst; // error over the allowed error
-} Row;
 
 // A hunt, by several threads.
 typedef struct {
@@ -40,8 +33,8 @@ typedef struct {
     time_t begin;
     atomic_ullong next; // the number of the sequence to be drawn next, from 0 on
     pthread_mutex_t lock;
-    Row law[LAWS];
-    long sequences, refused, unknown;
+    long sequences, steps, misses, refused, unknown;
+    double worst; // error over the allowed error
 } Hunt;
 
 // Whether a step of the sequence misses by 1.5 allowed errors or more, in any result.
@@ -51,28 +44,26 @@ static bool still_misses(const Sequence* sequence) {
     return trial.worst > 1.5;
 }
 
-static void print_miss(Hunt* hunt, const Sequence* sequence, const char* text, const TrialStep* taken,
-                       int step) {
+static void print_miss(Hunt* hunt, const Sequence* sequence, const TrialStep* taken, int step) {
+    char text[SEQUENCE_TEXT];
+    sequence_text(sequence, text, sizeof text);
     printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e: %s\n", law_name(taken->scene.law),
            taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], step + 1, scene_kappa(&taken->scene), text);
-    if (hunt->options.minimize > 0 && !hunt->options.near_line && still_misses(sequence)) {
+    if (hunt->options.minimize > 0 && still_misses(sequence)) {
         hunt->options.minimize--;
-        char plain[SEQUENCE_TEXT];
-        snprintf(plain, sizeof plain, "%s", text);
-        make_plain(plain, still_misses);
-        printf("plain: %s\n", plain);
+        make_plain(text, still_misses);
+        printf("plain: %s\n", text);
     }
     fflush(stdout);
 }
 
 static void print_step(const TrialStep* taken, int step) {
-    const FmuStep* s = &taken->step;
-    const ReferenceStep* t = &taken->truth;
     printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %g\n", step + 1,
-           taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path, taken->scene.delta_0,
-           taken->scene.delta_y_0, taken->scene.slips);
+           taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], taken->truth.S, taken->truth.path,
+           taken->scene.delta_0, taken->scene.delta_y_0, taken->scene.slips);
     for (int k = 0; k < RESULTS; k++) {
-        printf("  %-9s  FMU %24.17g  reference %24.17g\n", GRADE_NAMES[k], s->result[k], t->result[k]);
+        printf("  %-9s  FMU %24.17g  reference %24.17g\n", GRADE_NAMES[k], taken->step.result[k],
+               taken->truth.result[k]);
     }
     if (step == 0) {
         printf("  settled    FMU %.17g, %.17g  reference %.17g, %.17g\n", taken->settled.x, taken->settled.y,
@@ -82,32 +73,25 @@ static void print_step(const TrialStep* taken, int step) {
 
 static void try_sequence(Hunt* hunt, Sequence sequence) {
     Trial trial;
-    char text[SEQUENCE_TEXT];
-    sequence_text(&sequence, text, sizeof text);
-    if (hunt->options.near_line) {
-        trial_near_line(&trial, &sequence, NEARLY_NONE);
-    } else {
-        trial_run(&trial, &sequence);
-    }
+    trial_run(&trial, &sequence);
     pthread_mutex_lock(&hunt->lock);
     hunt->sequences++;
+    hunt->steps += trial.steps;
     hunt->unknown += trial.unknown;
     hunt->refused += trial.refused;
+    hunt->worst = fmax(hunt->worst, trial.worst);
     if (trial.refused) {
+        char text[SEQUENCE_TEXT];
+        sequence_text(&sequence, text, sizeof text);
         printf("refused step=%d: %s; %s\n", trial.steps + 1, trial.message.text, text);
     }
     for (int k = 0; k < trial.steps; k++) {
-        const TrialStep* taken = &trial.taken[k];
-        const double ratio = taken->verdict.ratio;
-        Row* row = &hunt->law[(int)taken->scene.law - 1];
-        row->steps++;
-        row->worst = fmax(row->worst, ratio);
-        if (!(ratio <= 1.0)) {
-            row->misses++;
-            print_miss(hunt, &sequence, text, taken, k);
+        if (!(trial.taken[k].verdict.ratio <= 1.0)) {
+            hunt->misses++;
+            print_miss(hunt, &sequence, &trial.taken[k], k);
         }
         if (hunt->options.replay) {
-            print_step(taken, k);
+            print_step(&trial.taken[k], k);
         }
     }
     pthread_mutex_unlock(&hunt->lock);
@@ -121,23 +105,27 @@ static void* run_job(void* of) {
         if ((double)number >= o->scenes) {
             break;
         }
-        try_sequence(hunt, sequence_drawn((uint64_t)o->seed, number, o->plane));
+        try_sequence(hunt, sequence_drawn((uint64_t)o->seed, number, o->kind));
     }
     return NULL;
+}
+
+static void fail(const char* what) {
+    perror(what);
+    exit(2);
 }
 
 static void run_all(Hunt* hunt) {
     pthread_t jobs[MOST_JOBS];
     for (int k = 0; k < hunt->options.jobs; k++) {
         if (pthread_create(&jobs[k], NULL, run_job, hunt) != 0) {
-            perror("hunt: a job");
-            exit(2);
+            fail("hunt: a job");
         }
     }
     for (int k = 0; k < hunt->options.jobs; k++) {
         pthread_join(jobs[k], NULL);
     }
-    printf("\nseed %.0f\n", hunt->options.seed);
+    printf("\nseed %.0f", hunt->options.seed);
 }
 
 // Each line is a sequence; # begins a comment.
@@ -145,8 +133,7 @@ static void replay_file(Hunt* hunt) {
     FILE* file = fopen(hunt->options.file, "r");
     char line[SEQUENCE_TEXT];
     if (file == NULL) {
-        perror(hunt->options.file);
-        exit(2);
+        fail(hunt->options.file);
     }
     while (fgets(line, sizeof line, file) != NULL) {
         if (line[0] != '#' && line[0] != '\n') {
@@ -156,29 +143,13 @@ static void replay_file(Hunt* hunt) {
     fclose(file);
 }
 
-// Returns the misses.
-static long print_sums(const Hunt* hunt) {
-    long misses = 0, steps = 0;
-    printf("\n| law | steps | misses | worst error over the allowed error |\n|---|---|---|---|\n");
-    for (int k = 0; k < LAWS; k++) {
-        const Row* row = &hunt->law[k];
-        misses += row->misses;
-        steps += row->steps;
-        printf("| %s | %ld | %ld | %.2g |\n", law_name(k + 1), row->steps, row->misses, row->worst);
-    }
-    printf("\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses\n",
-           hunt->sequences, steps, hunt->refused, hunt->unknown, misses);
-    return misses;
-}
-
 static void usage(void) {
     fprintf(stderr,
             "hunt [--seed S] [--scenes N] [--minutes M] [--jobs J] [--minimize K] [--plane] [--near-line]\n"
             "     [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--minimize: makes K misses plain.\n"
-            "--plane: scenes that slide, or vibrate, across.\n"
-            "--near-line: the first step along a line, and once more with V_y = 1e-9 m/s: within two "
-            "tolerances.\n"
+            "--plane: scenes that slide, or vibrate, across. --near-line: short steps that slide 1e-9 m/s "
+            "across.\n"
             "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
             "line.\n");
     exit(2);
@@ -194,32 +165,30 @@ static double number_of(const char* text) {
 }
 
 static Options read_options(int argc, char** argv) {
-    enum { SEED, SCENES, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY, PLANE, NEAR_LINE };
-    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},           {"scenes", 1, NULL, SCENES},
-                                          {"minutes", 1, NULL, MINUTES},     {"jobs", 1, NULL, JOBS},
-                                          {"minimize", 1, NULL, MINIMIZE},   {"plane", 0, NULL, PLANE},
-                                          {"file", 1, NULL, FILE_NAME},      {"replay", 1, NULL, REPLAY},
-                                          {"near-line", 0, NULL, NEAR_LINE}, {0}};
+    enum { SEED, SCENES, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY };
     Options o = {.seed = 1.0, .minutes = INFINITY, .jobs = 1.0};
+    int kind = ALONG;
+    const struct option names[] = {{"seed", 1, NULL, SEED},         {"scenes", 1, NULL, SCENES},
+                                   {"minutes", 1, NULL, MINUTES},   {"jobs", 1, NULL, JOBS},
+                                   {"minimize", 1, NULL, MINIMIZE}, {"plane", 0, &kind, PLANE},
+                                   {"file", 1, NULL, FILE_NAME},    {"near-line", 0, &kind, NEAR_LINE},
+                                   {"replay", 1, NULL, REPLAY},     {0}};
     double* const numbers[] = {&o.seed, &o.scenes, &o.minutes, &o.jobs, &o.minimize};
-    for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
+    for (int name, index; (name = getopt_long(argc, argv, "", names, &index)) != -1;) {
         if (name == FILE_NAME) {
             o.file = optarg;
         } else if (name == REPLAY) {
             o.replay = optarg;
-        } else if (name == PLANE) {
-            o.plane = true;
-        } else if (name == NEAR_LINE) {
-            o.near_line = true;
-        } else if (name <= MINIMIZE) {
-            *numbers[name] = number_of(optarg);
-        } else {
+        } else if (name > REPLAY) { // it is not known
             usage();
+        } else if (optarg) {
+            *numbers[name] = number_of(optarg);
         }
     }
     if (optind < argc) {
         usage();
     }
+    o.kind = (Kind)kind;
     o.scenes = o.scenes > 0.0 ? o.scenes : isinf(o.minutes) ? 1000.0 : INFINITY;
     o.jobs = fmin(MOST_JOBS, fmax(1.0, o.jobs));
     return o;
@@ -238,6 +207,8 @@ int main(int argc, char** argv) {
     } else {
         run_all(&hunt);
     }
-    const long misses = print_sums(&hunt);
-    return misses > 0 || (hunt.options.file && hunt.refused > 0);
+    printf(
+        "\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses, worst error %.2g\n",
+        hunt.sequences, hunt.steps, hunt.refused, hunt.unknown, hunt.misses, hunt.worst);
+    return hunt.misses > 0 || (hunt.options.file && hunt.refused > 0);
 }

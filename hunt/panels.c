@@ -20,8 +20,8 @@
 #include "solver/march.h"
 #include "trial.h"
 
-static bool lists = false;       // while a step is taken
-static double evaluations = 0.0; // up to the last panel
+static bool lists = false; // while a step is taken
+static double evaluations; // up to the last panel of the step
 
 static const char* const KINDS[] = {
     [FC_RELAXES] = "relaxes", [FC_STICKS] = "sticks", [FC_SLIPS] = "slips", [FC_NO_BRISTLE] = "coulomb"};
@@ -47,14 +47,6 @@ static void print_panel(const FcCrossing* crossing, From from, const FcPanel* pa
     }
 }
 
-static void begin_interval(const char* name, double duration, double before) {
-    evaluations = before;
-    if (lists) {
-        printf("%s of %.9g s\n%15s %15s %13s %13s %10s %9s %8s %8s %4s kind\n", name, duration, "t", "t_end",
-               "u", "u_end", "L", "z", "of_end", "of_mean", "made");
-    }
-}
-
 // ---- between the march and its functions ----
 
 #define WRAP(type, name, ...)                                                                                \
@@ -75,21 +67,11 @@ WRAP(void, fc_append_known, FcCrossing* crossing, const FcMap* map, double t) {
     print_panel(crossing, from, &none);
 }
 
-WRAP(void, fc_march_step, const FcScene* scene, const FcSolverOptions* options, double duration,
-     FcStepResult* result) {
-    begin_interval("march", duration, result->evaluations);
-    __real_fc_march_step(scene, options, duration, result);
-}
-
-WRAP(FcMap, fc_march_map, const FcScene* scene, const FcSolverOptions* options, double duration, double start,
-     FcMap* across, double* before) {
-    begin_interval("map", duration, *before);
-    return __real_fc_march_map(scene, options, duration, start, across, before);
-}
-
 WRAP(bool, fc_friction_contact_advance, FcFrictionContact* contact, double t, double h, FcMessage* message) {
     lists = true;
-    printf("step from %.17g s of %.17g s\n", t, h);
+    evaluations = 0.0;
+    printf("step from %.17g s of %.17g s\n%15s %15s %13s %13s %10s %9s %8s %8s %4s kind\n", t, h, "t",
+           "t_end", "u", "u_end", "L", "z", "of_end", "of_mean", "made");
     const bool is_taken = __real_fc_friction_contact_advance(contact, t, h, message);
     lists = false;
     return is_taken;

@@ -1,10 +1,393 @@
 #include "reference.h"
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 
-#include "moment.h"
+typedef long double Real;
+
+static const Real PI = 3.141592653589793238462643383279502884L;
+
+// The real part is along the sliding, the imaginary one across.
+typedef long double _Complex Vector;
+
+// ---- Roots; Radau's right rule on [0, 1] and its collocation matrix; linear equations ----
+
+typedef Real Function(const void* context, Real x);
+
+// The zero of a function between low and high, on the side of high: by bisection.
+static Real crossing(Function* function, const void* context, Real low, Real high) {
+    const bool above = function(context, low) > 0.0L;
+    for (;;) {
+        const Real x = 0.5L * (low + high);
+        if (!(x > low && x < high)) {
+            return high;
+        }
+        *(above == (function(context, x) > 0.0L) ? &low : &high) = x;
+    }
+}
+
+enum { STAGES = 10 };
+
+// Radau's right rule on [0, 1] and its collocation matrix.
+typedef struct {
+    Real node[STAGES + 1];   // the first one is 0 and no stage, the last one is 1
+    Real weight[STAGES];     // sum 1
+    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i + 1]
+} Rule;
+
+// P_0 .. P_STAGES of Legendre at x.
+static void legendre(Real x, Real P[STAGES + 1]) {
+    P[0] = 1.0L;
+    P[1] = x;
+    for (int m = 1; m < STAGES; m++) {
+        P[m + 1] = ((Real)(2 * m + 1) * x * P[m] - (Real)m * P[m - 1]) / (Real)(m + 1);
+    }
+}
+
+// Its zeros are the nodes.
+static Real radau(const void* unused, Real x) {
+    Real P[STAGES + 1];
+    (void)unused;
+    legendre(x, P);
+    return P[STAGES] - P[STAGES - 1];
+}
+
+// Each thread makes it once.
+static const Rule* the_rule(void) {
+    enum { n = STAGES };
+    static const Real GRID = 1.0L / 64.0L; // less than the distance of two zeros
+    static _Thread_local Rule rule;
+    if (rule.node[n] != 0.0L) {
+        return &rule;
+    }
+    Real x[n], P[n][n + 1], from = -1.0L;
+    for (int i = 0; i < n; i++) {
+        while (i < n - 1 && radau(NULL, from) * radau(NULL, from + GRID) > 0.0L) {
+            from += GRID;
+        }
+        x[i] = i < n - 1 ? crossing(radau, NULL, from, from + GRID) : 1.0L;
+        from += GRID;
+        legendre(x[i], P[i]);
+        rule.node[i + 1] = 0.5L * (1.0L + x[i]);
+        rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
+    }
+    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
+    // Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            Real sum = 1.0L + x[i];
+            for (int m = 1; m < n; m++) {
+                sum += P[j][m] * (P[i][m + 1] - P[i][m - 1]);
+            }
+            rule.to[i][j] = 0.5L * rule.weight[j] * sum;
+        }
+    }
+    return &rule;
+}
+
+// Solves linear equations without pivoting: the right sides become the solution.
+static void solve(Real A[STAGES][STAGES], Vector* side) {
+    for (int k = 0; k < STAGES; k++) {
+        side[k] /= A[k][k];
+        for (int j = STAGES - 1; j >= k; j--) {
+            A[k][j] /= A[k][k];
+        }
+        for (int i = 0; i < STAGES; i++) {
+            side[i] -= i == k ? 0.0L : A[i][k] * side[k];
+            for (int j = STAGES - 1; j >= k && i != k; j--) {
+                A[i][j] -= A[i][k] * A[k][j];
+            }
+        }
+    }
+}
+
+// ---- The contact ----
+
+// The factors of F_n and sigma before their powers of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
+typedef struct {
+    Real force, by_force;         // N
+    Real stiffness, by_stiffness; // N/m; N m2 for Asperities
+} AtModulus;
+
+static Real power_3_2(Real x) { return x * sqrtl(x); }
+
+// gamma(3/2, x); its rounding is that of Gamma(3/2).
+static Real lower_gamma_3_2(Real x) { return 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x); }
+
+static Real bessel_I0(Real x) {
+    const Real quarter = 0.25L * x * x;
+    Real term = 1.0L, sum = 1.0L;
+    for (int k = 1; k < 100000 && term > 1e-22L * sum; k++) {
+        term *= quarter / ((Real)k * (Real)k);
+        sum += term;
+    }
+    return sum;
+}
+
+static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
+    const Real R = scene->R, R_q = scene->R_q, lambda = scene->lambda, nu = scene->nu;
+    const Real density = (Real)scene->eta * scene->A_n * scene->c;
+    const Real p_m = (1.234L + 1.256L * nu) * (1.0L - nu * nu) * scene->Y;
+    const Real yields = PI * p_m / (2.0L * E);
+    const Real x = lambda * yields * yields * R / R_q;
+    const Real x_E = -2.0L * x / E;
+    const Real decay = expl(-x);
+    const Real elastic = 4.0L / 3.0L * sqrtl(R) * power_3_2(R_q / lambda) / lambda;
+    const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
+    const Real gamma = 1.5L * lower_gamma_3_2(x) - power_3_2(x) * decay; // gamma(5/2, x)
+    const Real force = elastic * E * gamma + plastic * (2.0L + x) * decay;
+    const Real force_E =
+        elastic * (gamma + E * power_3_2(x) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
+    AtModulus at = {.force = density * force, .by_force = force_E / force, .stiffness = scene->contact_sigma};
+    if (scene->contact == CONTACT_ASPERITIES) {
+        const Real area = scene->c * PI * (Real)scene->eta * R * R_q * scene->A_n / (lambda * lambda);
+        const Real bracket = 1.0L + decay;
+        at.stiffness = scene->stiffnessScale * E * area * area * bracket * bracket;
+        at.by_stiffness = 1.0L / E - 2.0L * decay * x_E / bracket;
+    } else if (scene->contact == CONTACT_MINDLIN) {
+        const Real half = expl(-0.5L * x), yielded = 0.5L * power_3_2(2.0L / lambda);
+        const Real upper = 0.5L * sqrtl(PI) - lower_gamma_3_2(0.5L * x);
+        const Real sum = lower_gamma_3_2(x) / power_3_2(lambda) + yielded * half * upper;
+        const Real slope =
+            sqrtl(x) * decay / power_3_2(lambda) - 0.5L * yielded * half * (upper + sqrtl(0.5L * x) * half);
+        const Real tangential = 2.0L * (1.0L - nu) / (2.0L - nu);
+        at.stiffness = scene->stiffnessScale * density * 2.0L * E * tangential * sqrtl(R * R_q) * sum;
+        at.by_stiffness = 1.0L / E + slope * x_E / sum;
+    }
+    return at;
+}
+
+// ---- The scene at a time ----
+
+typedef struct {
+    ReferenceScene scene;
+    // The velocity [m/s] is start + rate t + Re(x turn), Re(y turn), with turn = e^(i omega t) - 1.
+    Vector start, rate, x, y;
+    // The separation [m] is d + d_rate t + Re(swing e^(i omega t)).
+    Real d, d_rate;
+    Vector swing;
+    Real h, omega, decay, swell, excess;
+    Real cycle;     // 1, the part of a period before the start
+    AtModulus held; // at the modulus of the start
+    bool elastic;   // the law is ElasticPlastic
+    bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
+    bool open;      // nothing touches
+    bool ramp;      // between two steps: nothing moves a bristle but its bound
+    bool pushed;    // after the ramp, a bristle that has broken away
+    // On a ramp: rates [1/s] of the logarithms of F_C or mu, of the stiffness's factor, ..
+    struct {
+        Real limit, scale, ratio, V_S;
+    } ln_rate;
+    Real S;   // N
+    Real top; // m/s, the largest |V|
+    int fineness;
+    Real panels; // taken so far
+} World;
+
+// At a local time; rates are time derivatives of logarithms.
+typedef struct {
+    Vector V;                      // m/s, 0 on a ramp
+    Vector input;                  // m/s, the same on a ramp too
+    Real F_n, sigma;               // N, N/m
+    Real coulomb;                  // N, F_C or mu F_n
+    Real g;                        // N, the force to which a bristle tends
+    Real B;                        // N, the bound of a bristle that sticks
+    Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
+} At;
+
+// (cos, sin) of 2 pi turns: by an angle of at most an eighth of a turn, which the library need not reduce.
+static Vector direction(Real turns) {
+    const Real quarters = rintl(4.0L * turns), rest = 2.0L * PI * (turns - 0.25L * quarters);
+    const Real x = cosl(rest), y = sinl(rest);
+    const Vector of[] = {CMPLXL(x, y), CMPLXL(-y, x), CMPLXL(-x, -y), CMPLXL(y, -x)};
+    return of[(long)quarters & 3];
+}
+
+static Real dot(Vector a, Vector b) { return creall(a) * creall(b) + cimagl(a) * cimagl(b); }
+// Turned by a quarter.
+static Vector across(Vector a) { return CMPLXL(-cimagl(a), creall(a)); }
+static Real length_of(Vector a) { return cimagl(a) == 0.0L ? fabsl(creall(a)) : sqrtl(dot(a, a)); }
+// Of that length along another, or 0.
+static Vector along(Vector a, Real length) {
+    const Real now = length_of(a);
+    return now > 0.0L ? (length / now * a) : a;
+}
+
+bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }
+
+// (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
+static Vector turn_at(const World* w, Real t) {
+    const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : 1.0L;
+    return 2.0L * cimagl(half) * across(half);
+}
+
+static Vector vibration(const World* w, Vector turn) {
+    return CMPLXL(creall(w->x * turn), creall(w->y * turn));
+}
+
+static Vector velocity(const World* w, Real t, Vector turn) {
+    return w->start + t * w->rate + vibration(w, turn);
+}
+
+// The velocity at a time and its derivatives up to that order.
+static void velocities(const World* w, Real t, int order, Vector* V) {
+    Vector turn = turn_at(w, t);
+    V[0] = velocity(w, t, turn);
+    turn += 1.0L;
+    for (int k = 1; k <= order; k++) {
+        turn = w->omega * across(turn);
+        V[k] = vibration(w, turn);
+    }
+    V[1] = order > 0 ? (V[1] + w->rate) : V[1];
+}
+
+// The bristle, or Coulomb's limit, depends on the separation.
+static bool knows_contact(const ReferenceScene* s) {
+    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
+}
+
+// F_n, sigma and the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left out.
+static At contact_at(const World* w, Real t, Vector turn) {
+    const ReferenceScene* s = &w->scene;
+    At at = {.sigma = s->contact_sigma};
+    if (w->open || !knows_contact(s)) {
+        return at;
+    }
+    const AtModulus of = s->E_rate == 0.0 ? w->held : at_modulus(s, (Real)s->E + s->E_rate * t);
+    const Vector swing = w->swing * (1.0L + turn);
+    Real d, d_rate = -w->omega * cimagl(swing);
+    if (s->input == INPUT_LOAD) {
+        const Real rate = s->load_rate, load = rate == 0.0L ? s->load : rate * (t + s->load / rate);
+        at.F_n = load / w->swell * expl(-w->decay * creall(swing));
+        d = logl(of.force * w->swell / load) / w->decay + creall(swing);
+        d_rate += (of.by_force * s->E_rate - s->load_rate / load) / w->decay;
+    } else {
+        d = w->d + w->d_rate * t + creall(swing);
+        at.F_n = of.force * expl(-w->decay * d);
+        d_rate += w->d_rate;
+    }
+    const bool asperities = s->contact == CONTACT_ASPERITIES, mindlin = s->contact == CONTACT_MINDLIN;
+    const Real share = at.F_n / of.force;
+    at.sigma = asperities ? of.stiffness * share * share / (d * d * d)
+               : mindlin  ? of.stiffness * share
+                          : of.stiffness;
+    // The powers of F_n in the limit and in the stiffness.
+    const Real of_limit = s->limit == LIMIT_LOAD ? 1.0L : 0.0L, of_sigma = asperities ? 2.0L : mindlin;
+    const Real by_E = of_limit * of.by_force - of.by_stiffness;
+    const Real by_d = (of_sigma - of_limit) * w->decay + (asperities ? 3.0L / d : 0.0L);
+    at.bound_rate = by_E * s->E_rate + by_d * d_rate;
+    return at;
+}
+
+static World at_rest(const World* w) {
+    World rest = *w;
+    rest.swing = 0.0L;
+    return rest;
+}
+
+static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration
+
+bool is_open(const World* w, Real t) {
+    World rest = at_rest(w);
+    rest.open = false;
+    const At at = contact_at(&rest, t, 0.0L);
+    return knows_contact(&w->scene) && !(at.F_n >= OPEN && at.sigma >= OPEN);
+}
+
+static At scene_at(const World* w, Real t) {
+    const ReferenceScene* s = &w->scene;
+    const Vector turn = turn_at(w, t);
+    At at = contact_at(w, t, turn);
+    const Vector V = velocity(w, t, turn);
+    Real excess = w->excess, V_S = s->V_S;
+    at.V = w->ramp ? 0.0L : V;
+    at.input = V;
+    at.coulomb = s->limit == LIMIT_LOAD ? s->mu * at.F_n : s->F_C;
+    if (w->ramp) {
+        at.sigma *= expl(w->ln_rate.scale * t);
+        at.coulomb *= expl(w->ln_rate.limit * t);
+        excess = (1.0L + w->excess) * expl(w->ln_rate.ratio * t) - 1.0L;
+        V_S *= expl(w->ln_rate.V_S * t);
+        at.bound_rate += w->ln_rate.limit - w->ln_rate.scale;
+    }
+    at.kinetic_rate = at.bound_rate;
+    at.bound_rate += w->ln_rate.ratio;
+    at.B = at.coulomb * (1.0L + excess);
+    at.g = at.coulomb;
+    if (excess != 0.0L) {
+        const Real square = dot(V, V) / (V_S * V_S), fall = expl(-square);
+        const Real curve = 1.0L + excess * fall;
+        at.g *= curve;
+        Vector moves[2];
+        velocities(w, t, 1, moves);
+        const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V, moves[1]) / (V_S * V_S));
+        at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
+    }
+    return at;
+}
+
+// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
+static Real bound(const World* w, const At* at, bool sticks) {
+    return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
+}
+static Real bound_rate(const World* w, const At* at, bool sticks) {
+    return bound(w, at, sticks) * (sticks || !w->elastic ? at->bound_rate : at->kinetic_rate);
+}
+
+// ---- The step ----
+
+// Mean of the limit over a period of the vibration with the inputs of a time [N].
+static Real mean_limit(const World* w, Real t) {
+    World rest = at_rest(w);
+    rest.open = is_open(w, t);
+    return scene_at(&rest, t).coulomb * (w->scene.limit == LIMIT_LOAD ? w->swell : 1.0L);
+}
+
+// The largest speed [m/s] of a component, with its vibration.
+static Real fastest(Real V, Real rate, Real swing, Real h) {
+    return fmaxl(fabsl(V), fabsl(V + rate * h)) + fabsl(swing);
+}
+
+static World make_world(const ReferenceScene* scene, Real h, int fineness) {
+    World w = {.scene = *scene, .h = h, .fineness = fineness, .elastic = scene->law == LAW_ELASTIC_PLASTIC};
+    w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
+    w.excess = scene->law == LAW_LUGRE || w.elastic ? (Real)scene->staticRatio - 1.0L : 0.0L;
+    w.omega = 2.0L * PI * scene->f;
+    // The whole periods are taken off f start exactly: off the product and the remainder of its rounding.
+    const double cycles = scene->f * scene->start;
+    const double lost = fma(scene->f, scene->start, -cycles);
+    w.cycle = (Real)(cycles - floor(cycles)) + lost;
+    w.x = scene->V_1 * direction(w.cycle);
+    w.y = scene->V_2 * direction(w.cycle + scene->phase_2 / (2.0L * PI));
+    w.swing = scene->a_d * direction(w.cycle + scene->phase_d / (2.0L * PI));
+    w.start = CMPLXL(scene->V, scene->V_y) + vibration(&w, 1.0L);
+    w.rate = CMPLXL(scene->V_rate, scene->V_y_rate);
+    w.top = hypotl(fastest(scene->V, scene->V_rate, scene->V_1, h),
+                   fastest(scene->V_y, scene->V_y_rate, scene->V_2, h));
+    w.decay = (Real)scene->lambda / scene->R_q;
+    w.swell = bessel_I0(w.decay * scene->a_d);
+    w.held = at_modulus(scene, scene->E);
+    w.d = scene->d;
+    w.d_rate = scene->d_rate;
+    return w;
+}
+
+// The separation [m] at the start, with the vibration.
+static Real separation(const World* w) {
+    const ReferenceScene* s = &w->scene;
+    return creall(w->swing) +
+           (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
+}
+
+ReferenceRest reference_rest(const ReferenceScene* scene) {
+    ReferenceScene loaded = *scene;
+    loaded.load = fmax(scene->load, 1e-99);
+    const World moves = make_world(&loaded, 0.0L, 1), w = at_rest(&moves);
+    const At at = scene_at(&w, 0.0L);
+    return (ReferenceRest){(double)separation(&w), (double)at.coulomb, (double)at.sigma};
+}
 
 // ---- Panels ----
 
@@ -23,7 +406,7 @@ typedef struct {
 } Sums;
 
 static void add_times(Sums* sums, const Sums* one, Real factor) {
-    sums->impulse = plus(sums->impulse, factor, one->impulse);
+    sums->impulse += factor * one->impulse;
     sums->work += factor * one->work;
     sums->heat += factor * one->heat;
     sums->path += factor * one->path;
@@ -32,7 +415,7 @@ static void add_times(Sums* sums, const Sums* one, Real factor) {
 static void add(Sums* sums, const Sums* part) {
     add_times(sums, part, 1.0L);
     sums->end = part->end;
-    sums->change = plus(sums->change, 1.0L, part->change);
+    sums->change += part->change;
     sums->length = part->length;
     sums->blur = part->blur;
     sums->force += part->force;
@@ -41,11 +424,11 @@ static void add(Sums* sums, const Sums* part) {
 
 // Adds a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
-    const Vector rest = plus(scaled(w->scene.sigma_2, V), w->scene.sigma_1, rate);
+    const Vector rest = w->scene.sigma_2 * V + w->scene.sigma_1 * rate;
     const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
-    sums->impulse = plus(sums->impulse, time, plus(spring, w->scene.sigma_2, V));
+    sums->impulse += time * (spring + w->scene.sigma_2 * V);
     sums->work += time * (dot(spring, V) + dot(rest, V));
-    sums->heat += time * (dot(spring, plus(V, -1.0L, rate)) + dot(rest, V));
+    sums->heat += time * (dot(spring, V - rate) + dot(rest, V));
     sums->path += time * speed;
     sums->force += time * (strong + viscous + w->S);
     sums->power +=
@@ -60,10 +443,10 @@ static Real relaxation(const World* w, const At* at) {
 // The rate [m/s] of a bristle by its law, or of one that slips along its bound.
 static Vector rate_of(const World* w, const At* at, Vector delta, bool slips) {
     if (!slips) {
-        return plus(at->V, -relaxation(w, at), delta);
+        return at->V - relaxation(w, at) * delta;
     }
-    const Vector n = along(delta, 1.0L), across = {-n.y, n.x};
-    return plus(scaled(bound_rate(w, at, false), n), dot(at->V, across), across);
+    const Vector n = along(delta, 1.0L);
+    return (bound_rate(w, at, false) * n) + dot(at->V, across(n)) * across(n);
 }
 
 // The speed [m/s] at which the law alone would carry a bristle of that direction beyond its kinetic bound.
@@ -130,56 +513,50 @@ typedef struct {
     Signs sign[STAGES + 1]; // at the start and at the nodes
 } Panel;
 
-// The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
-static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
-    Real A[STAGES][STAGES + SIDES] = {{0}};
-    for (int j = 0; j < STAGES; j++) {
-        const Real r = relaxation(w, &at[j]);
-        const Vector rate = plus(at[j].V, -r, delta);
-        for (int i = 0; i < STAGES; i++) {
-            const Real weight = size * w->rule->to[i][j];
-            A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
-            A[i][STAGES] += weight * rate.x;
-            A[i][STAGES + 1] += weight * rate.y;
-        }
-    }
-    solve(A);
+// Adds a rate at the node j, and its slope, to the equations Y_i - size sum_j to_ij slope_j Y_j = size sum_j to_ij rate_j.
+static void add_rate(Real A[STAGES][STAGES], Vector* side, int j, Real size, Real slope, Vector rate) {
     for (int i = 0; i < STAGES; i++) {
-        change[i] = (Vector){A[i][STAGES], A[i][STAGES + 1]};
+        const Real weight = size * the_rule()->to[i][j];
+        A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
+        side[i] += weight * rate;
     }
 }
 
-// That direction, turned by an angle [rad].
-static Vector turned(Vector n, Real angle) {
-    const Vector turn = angle == 0.0L ? (Vector){1.0L, 0.0L} : direction(angle / (2.0L * PI));
-    return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
+// The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
+static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
+    Real A[STAGES][STAGES];
+    for (int j = 0; j < STAGES; j++) {
+        const Real r = relaxation(w, &at[j]);
+        add_rate(A, change, j, size, -r, at[j].V - r * delta);
+    }
+    solve(A, change);
 }
+
+// That direction, turned by an angle [rad].
+static Vector turned(Vector n, Real angle) { return angle == 0.0L ? n : direction(angle / (2.0L * PI)) * n; }
 
 // The angles from the direction n at the nodes of a bristle that slips, by Newton from 0; returns false if it does not
 // converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
     for (int k = 0; k < 25; k++) {
-        Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
+        Real A[STAGES][STAGES], most = 0.0L;
+        Vector step[STAGES];
         for (int i = 0; i < STAGES; i++) {
-            A[i][STAGES] = -angle[i];
+            step[i] = -angle[i];
         }
         for (int j = 0; j < STAGES; j++) {
-            const Vector now = turned(n, angle[j]), across = {-now.y, now.x}, V = at[j].V;
-            const Real lies = bound(w, &at[j], false), rate = dot(V, across) / lies,
+            const Vector now = turned(n, angle[j]), V = at[j].V;
+            const Real lies = bound(w, &at[j], false), rate = dot(V, across(now)) / lies,
                        slope = -dot(V, now) / lies;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
-            for (int i = 0; i < STAGES; i++) {
-                const Real weight = size * w->rule->to[i][j];
-                A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-                A[i][STAGES] += weight * rate;
-            }
+            add_rate(A, step, j, size, slope, rate);
         }
-        solve(A);
+        solve(A, step);
         for (int i = 0; i < STAGES; i++) {
-            angle[i] += A[i][STAGES];
-            most = fmaxl(most, fabsl(A[i][STAGES]));
+            angle[i] += creall(step[i]);
+            most = fmaxl(most, fabsl(creall(step[i])));
         }
         if (!(most < 3.0L)) {
             return false;
@@ -196,7 +573,7 @@ static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
     Vector V[2] = {at->V};
     if (ends && length_of(at->V) <= 1e-17L * w->top) {
         velocities(w, t, 1, V);
-        V[0] = scaled(-1.0L, V[1]);
+        V[0] = -1.0L * V[1];
     }
     return along(V[0], at->coulomb);
 }
@@ -204,12 +581,12 @@ static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
 static Panel panel(const March* march, Real a, Real b, Vector delta) {
     enum { last = STAGES - 1 };
     World* w = march->w;
-    const Rule* rule = w->rule;
+    const Rule* rule = the_rule();
     const Real size = b - a;
     const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
-    Vector change[STAGES] = {{0}};
+    Vector change[STAGES] = {0.0L};
     Real angle[STAGES] = {0.0L};
     const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
@@ -217,7 +594,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         at[i] = scene_at(w, a + size * rule->node[i + 1]);
     }
     if (slips && !turn_over(w, at, size, start, angle)) {
-        p.sums.end.x = NAN; // agrees with nothing
+        p.sums.end = (Real)NAN; // agrees with nothing
         return p;
     }
     if (bristle && !slips) {
@@ -226,14 +603,14 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
     for (int i = 0; i < STAGES; i++) {
         const Real t = a + size * rule->node[i + 1];
-        Vector rate = {0}, spring = {0};
+        Vector rate = 0.0L, spring = 0.0L;
         if (slips) {
-            change[i] = plus(scaled(bound(w, &at[i], false), turned(start, angle[i])), -1.0L, delta);
+            change[i] = (bound(w, &at[i], false) * turned(start, angle[i])) - delta;
         }
-        const Vector now = plus(delta, 1.0L, change[i]);
+        const Vector now = delta + change[i];
         if (bristle) {
             rate = rate_of(w, &at[i], now, slips);
-            spring = scaled(at[i].sigma, now);
+            spring = at[i].sigma * now;
             relaxed += slips ? 0.0L : size * rule->weight[i] * relaxation(w, &at[i]);
             longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
@@ -245,10 +622,10 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     }
     if (bristle) {
         p.sums.change = change[last];
-        p.sums.end = plus(delta, 1.0L, change[last]);
+        p.sums.end = delta + change[last];
         p.sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
         p.sums.length = fmaxl(longest * expl(-relaxed), at[last].g / at[last].sigma);
-        p.sums.impulse = plus(p.sums.impulse, w->scene.sigma_1, p.sums.change);
+        p.sums.impulse += w->scene.sigma_1 * p.sums.change;
         p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
     const At first = scene_at(w, a);
@@ -268,19 +645,21 @@ static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real force = share * LEAST * two->force / size;
     const Real impulse = same * two->force + force * w->h;
     const Real energy = same * two->power + force * (w->top * w->h + two->length);
-    return length_of(plus(one->end, -1.0L, two->end)) <= same * two->length + two->blur &&
-           length_of(plus(one->impulse, -1.0L, two->impulse)) <= impulse &&
-           fabsl(one->work - two->work) <= energy && fabsl(one->heat - two->heat) <= energy;
+    return length_of(one->end - two->end) <= same * two->length + two->blur &&
+           length_of(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
+           fabsl(one->heat - two->heat) <= energy;
 }
 
 // Whether a finite sign that is positive at three nodes may be negative between them: by the parabola through them.
 static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
+    if (!(y_0 > rounding && y_0 < INFINITY)) {
+        return false;
+    }
     const Real left = (y_1 - y_0) / (x[1] - x[0]), right = (y_2 - y_1) / (x[2] - x[1]);
     const Real curve = (right - left) / (x[2] - x[0]), least = fminl(y_0, fminl(y_1, y_2));
     const Real lowest = 0.5L * (x[0] + x[1] - left / curve);
     const Real low = y_0 + (lowest - x[0]) * (left + curve * (lowest - x[1]));
-    return y_0 > rounding && curve > 0.0L && lowest > x[0] && lowest < x[2] && low < 0.5L * least &&
-           least - low > rounding;
+    return curve > 0.0L && lowest > x[0] && lowest < x[2] && low < 0.5L * least && least - low > rounding;
 }
 
 // Whether the motion is over at node k; 0 is the start. It is not if the bristle is beyond its bound by a double's rounding
@@ -293,7 +672,7 @@ static bool is_over(const Panel* p, int k) {
 
 // Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
-    const Real *x = w->rule->node, of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
+    const Real *x = the_rule()->node, of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
     for (int k = 0; k + 2 <= STAGES && !is_over(p, k + 2); k++) {
         const Signs* s = &p->sign[k];
         if (dips(&x[k], s[0].room, s[1].room, s[2].room, of_room) ||
@@ -321,7 +700,7 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
         march->met = true;
         march->at_bound = p->sign[k].room < 0.0L;
         march->from = a;
-        const Real *x = march->w->rule->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
+        const Real *x = the_rule()->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
         march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
         if (!(march->met_at > a)) {
             return;
@@ -348,7 +727,7 @@ typedef struct {
 
 // On a ramp V is linear, and the product V V' tells its zero, too.
 static bool is_on_line(const World* w) {
-    return !w->ramp && w->start.y == 0.0L && w->rate.y == 0.0L && w->cosine.y == 0.0L && w->sine.y == 0.0L;
+    return !w->ramp && cimagl(w->start) == 0.0L && cimagl(w->rate) == 0.0L && w->y == 0.0L;
 }
 
 static Real square(const void* context, Real t) {
@@ -356,7 +735,7 @@ static Real square(const void* context, Real t) {
     Vector V[4];
     velocities(of->w, t, of->order, V);
     if (of->order > 0 && is_on_line(of->w)) {
-        return V[of->order - 1].x;
+        return creall(V[of->order - 1]);
     }
     return of->order == 0   ? dot(V[0], V[0]) - of->level
            : of->order == 1 ? dot(V[0], V[1])
@@ -457,9 +836,9 @@ static void begin(March* march, Real a, Real b) {
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
     const Vector from = march->state.delta, to = along(from, bound(w, at, false));
-    const Vector damping = scaled(w->scene.sigma_1, plus(to, -1.0L, from));
-    const Real lost = dot(plus(from, -1.0L, to), plus(from, 1.0L, to));
-    march->sums.impulse = plus(march->sums.impulse, 1.0L, damping);
+    const Vector damping = w->scene.sigma_1 * (to - from);
+    const Real lost = dot(from - to, from + to);
+    march->sums.impulse += damping;
     march->sums.work += dot(damping, at->V);
     march->sums.heat += dot(damping, at->V) + 0.5L * at->sigma * lost;
     march->state = (State){to, true};
@@ -555,6 +934,30 @@ static March march_from(World* w, State state) {
     return march;
 }
 
+// The limit of a fast ramp from the start of a world to that of another, in a time of 1.
+static World ramp_between(const World* from, const World* to) {
+    World w = *from;
+    ReferenceScene* s = &w.scene;
+    const ReferenceScene* end = &to->scene;
+    w.ramp = true;
+    w.h = 1.0L;
+    w.S = to->S;
+    w.top = 0.0L;
+    s->input = INPUT_SEPARATION;
+    s->V_1 = s->V_2 = s->a_d = 0.0;
+    s->E_rate = end->E - s->E;
+    w.d = separation(from);
+    w.d_rate = separation(to) - w.d;
+    w.rate = to->start - from->start;
+    w.x = w.y = w.swing = 0.0L;
+    w.ln_rate.limit = s->limit == LIMIT_LOAD ? logl((Real)end->mu / s->mu) : logl((Real)end->F_C / s->F_C);
+    w.ln_rate.scale = s->contact == CONTACT_CONSTANT ? logl((Real)end->contact_sigma / s->contact_sigma)
+                                                     : logl((Real)end->stiffnessScale / s->stiffnessScale);
+    w.ln_rate.ratio = logl((1.0L + to->excess) / (1.0L + from->excess));
+    w.ln_rate.V_S = logl((Real)end->V_S / s->V_S);
+    return w;
+}
+
 // The effect of a jump of the inputs, or of a start beyond the bound, on the bristle; returns its heat.
 static Real jump(const ReferenceScene* before, const World* w, State* state) {
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
@@ -606,27 +1009,27 @@ typedef struct {
 } Map;
 
 static Map find_map(World* w, Real unit) {
-    static const Vector AT[4] = {{0.0L, 0.0L}, {1.0L, 0.0L}, {-1.0L, 0.0L}, {0.0L, 1.0L}};
+    const Vector at[4] = {0.0L, 1.0L, -1.0L, CMPLXL(0.0L, 1.0L)};
     Map map = {.m = {{1.0L}}};
     Real of[4][5], way[4];
-    Vector shift = {0};
+    Vector shift = 0.0L;
     const bool bounded = w->bounded;
     w->bounded = false; // of a period that touches none
     for (int k = 0; k < 4; k++) {
-        const March march = march_from(w, (State){scaled(unit, AT[k]), false});
+        const March march = march_from(w, (State){unit * at[k], false});
         const Sums* s = &march.sums;
-        shift = k == 0 ? scaled(1.0L / unit, s->change) : shift;
-        way[k] = s->change.x / unit;
-        of[k][0] = s->impulse.x, of[k][1] = s->impulse.y, of[k][2] = s->work, of[k][3] = s->heat;
+        shift = k == 0 ? (1.0L / unit * s->change) : shift;
+        way[k] = creall(s->change) / unit;
+        of[k][0] = creall(s->impulse), of[k][1] = cimagl(s->impulse), of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
     }
     w->bounded = bounded;
-    shift.x = w->elastic && w->scene.V == 0.0 ? 0.0L : shift.x; // it does not drift
-    shift.y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : shift.y;
+    const Real x = w->elastic && w->scene.V == 0.0 ? 0.0L : creall(shift); // it does not drift
+    const Real y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : cimagl(shift);
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
-    map.m[1][0] = shift.x, map.m[1][1] = kept;
-    map.m[2][0] = shift.y, map.m[2][2] = kept;
-    map.m[3][0] = dot(shift, shift), map.m[3][1] = 2.0L * shift.x * kept, map.m[3][2] = 2.0L * shift.y * kept;
+    map.m[1][0] = x, map.m[1][1] = kept;
+    map.m[2][0] = y, map.m[2][2] = kept;
+    map.m[3][0] = x * x + y * y, map.m[3][1] = 2.0L * x * kept, map.m[3][2] = 2.0L * y * kept;
     map.m[3][3] = kept * kept;
     for (int i = 0; i < 5; i++) {
         Real* row = map.m[4 + i];
@@ -662,15 +1065,15 @@ static const Real FOR_EVER = 0x1p39L + 1.0L; // periods: the highest power, and 
 
 // delta after 2^k periods that touch no bound; adds their sums.
 static Vector after_untouched(const Period* p, int k, Vector delta, Sums* sums) {
-    const Vector x = scaled(1.0L / p->unit, delta);
+    const Vector x = 1.0L / p->unit * delta;
     Real of[ROWS];
     for (int i = 0; i < ROWS; i++) {
         const Real* row = p->power[k].m[i];
-        of[i] = row[0] + x.x * row[1] + x.y * row[2] + dot(x, x) * row[3];
+        of[i] = row[0] + creall(x) * row[1] + cimagl(x) * row[2] + dot(x, x) * row[3];
     }
-    const Sums part = {.impulse = {of[4], of[5]}, .work = of[6], .heat = of[7], .path = of[8]};
+    const Sums part = {.impulse = CMPLXL(of[4], of[5]), .work = of[6], .heat = of[7], .path = of[8]};
     add_times(sums, &part, 1.0L);
-    return scaled(p->unit, (Vector){of[1], of[2]});
+    return p->unit * CMPLXL(of[1], of[2]);
 }
 
 // Takes the periods that touch no bound, at the most n or FOR_EVER, and returns their number; the first one touches none. If a
@@ -707,8 +1110,7 @@ typedef struct {
 } Mark;
 
 static bool are_equal(State a, State b, Real unit) {
-    return a.broke == b.broke &&
-           length_of(plus(a.delta, -1.0L, b.delta)) <= 3e-17L * (unit + length_of(b.delta));
+    return a.broke == b.broke && length_of(a.delta - b.delta) <= 3e-17L * (unit + length_of(b.delta));
 }
 
 // A length [m] of deflections.
@@ -734,7 +1136,7 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
         if (!march.slipped) {
             const Real passed = pass_untouched(&p, state, n - done, sums);
             if (isinf(n) && passed == FOR_EVER) {
-                *mean = scaled(w->scene.f, march_from(w, *state).sums.impulse);
+                *mean = w->scene.f * march_from(w, *state).sums.impulse;
                 return true;
             }
             done += passed;
@@ -758,7 +1160,7 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
         add_times(&cycle, &marks[k].sums, -1.0L);
         const Real length = done - marks[k].count;
         if (isinf(n)) {
-            *mean = scaled(w->scene.f / length, cycle.impulse);
+            *mean = w->scene.f / length * cycle.impulse;
             for (; k < count; k++) {
                 const bool is_less = length_of(marks[k].state.delta) < length_of(state->delta);
                 *state = is_less ? marks[k].state : *state;
@@ -775,17 +1177,18 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
 
 // Newton's step to the fixed point of a period's map, from a state, its end and its miss after the period.
 static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
-    const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
-    const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).state.delta));
-    const Vector by_y = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).state.delta));
-    const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
-    return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
+    const Vector x = state.delta - step, y = state.delta - CMPLXL(0.0L, step);
+    const Vector by_x = 1.0L / step * (end - march_from(w, (State){x, false}).state.delta);
+    const Vector by_y = 1.0L / step * (end - march_from(w, (State){y, false}).state.delta);
+    // of the columns 1 - by_x and i - by_y, by Cramer's rule
+    const Vector a = 1.0L - by_x, b = CMPLXL(0.0L, 1.0L) - by_y;
+    return CMPLXL(dot(across(b), miss), -dot(across(a), miss)) / dot(across(b), a);
 }
 
 // The periodic state by Newton, if it does not depend on the start. Small slips come to it in few steps, though each of
 // them changes the state by little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->scene.V, w->scene.V_y});
+    const Vector shift = CMPLXL(w->scene.V, w->scene.V_y) / w->scene.f;
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
     w->panels = 0.0L;
     for (int k = 0; k < 60 && w->panels <= MOST_OF_SETTLING; k++) {
@@ -793,7 +1196,7 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
         if (w->panels > MOST_PANELS) { // it did not come to the end of the period
             return false;
         }
-        const Vector miss = plus(march.state.delta, -1.0L, state->delta);
+        const Vector miss = march.state.delta - state->delta;
         if (w->elastic && !march.slipped) { // it drifts until it slips
             Sums unused = {0};
             Period p = {.world = *w, .unit = unit};
@@ -802,11 +1205,11 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
         }
         const Vector newton = newton_step(w, *state, march.state.delta, miss, step);
         if (length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
-            *mean = scaled(w->scene.f, march.sums.impulse);
+            *mean = w->scene.f * march.sums.impulse;
             return true;
         }
         const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
-        state->delta = plus(state->delta, 1.0L, plain ? miss : newton);
+        state->delta += (plain ? miss : newton);
     }
     return false;
 }
@@ -824,11 +1227,33 @@ static bool settle(World* w, State* state, Vector* mean) {
     if (length_of(at.V) > 0.0L) {
         *state = (State){along(at.V, at.g / at.sigma), has_static(w)};
     }
-    *mean = plus(scaled(at.sigma, state->delta), s->sigma_2, at.V);
+    *mean = at.sigma * state->delta + s->sigma_2 * at.V;
     return true;
 }
 
 // ---- The step ----
+
+// The same with its inputs held.
+static World held_world(const World* w, Real h) {
+    World held = *w;
+    ReferenceScene* s = &held.scene;
+    s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
+    held.rate = 0.0L;
+    held.d_rate = 0.0L;
+    held.h = h;
+    return held;
+}
+
+// The scale of the tolerance [N], for the deflection at the start.
+static Real largest_force(const World* w, Vector delta) {
+    const ReferenceScene* s = &w->scene;
+    const bool bristle = s->law != LAW_COULOMB;
+    Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
+    if (bristle && !is_open(w, 0.0L)) {
+        S = fmaxl(S, scene_at(w, 0.0L).sigma * length_of(delta));
+    }
+    return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
+}
 
 // The force [N] at a time.
 static Vector force_at(const World* w, Real t, State state) {
@@ -837,13 +1262,13 @@ static Vector force_at(const World* w, Real t, State state) {
     there.open = is_open(w, t);
     const At at = scene_at(&there, t);
     if (s->law == LAW_COULOMB || there.open) {
-        return plus(along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L), s->sigma_2, at.V);
+        return along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L) + s->sigma_2 * at.V;
     }
     const bool slips = w->bounded && (state.broke || !has_static(w)) &&
                        length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
                        outward(w, &at, state.delta) > 0.0L;
     const Vector rate = rate_of(w, &at, state.delta, slips);
-    return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
+    return (at.sigma * state.delta + s->sigma_1 * rate) + s->sigma_2 * at.V;
 }
 
 static bool is_held(const ReferenceScene* s) {
@@ -852,7 +1277,7 @@ static bool is_held(const ReferenceScene* s) {
 }
 
 static State start_of(const ReferenceScene* s) {
-    return s->law == LAW_COULOMB ? (State){0} : (State){{s->delta_0, s->delta_y_0}, s->slips != 0};
+    return s->law == LAW_COULOMB ? (State){0} : (State){CMPLXL(s->delta_0, s->delta_y_0), s->slips != 0};
 }
 
 // Takes the step; returns false if it needs more panels or cycles than the reference takes.
@@ -893,12 +1318,10 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     }
     const Vector start = force_at(&held, 0.0L, seen);
     result->known = advance(&w, &state, &sums) && result->known;
-    const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
-    const Real results[RESULTS] = {
-        [F_T] = force.x,         [F_Y] = force.y,          [F_T_MEAN] = mean.x,
-        [F_Y_MEAN] = mean.y,     [F_T_START] = start.x,    [F_Y_START] = start.y,
-        [W_F] = sums.work,       [Q_F] = sums.heat,        [SLIPS_AT_END] = state.broke,
-        [DELTA] = state.delta.x, [DELTA_Y] = state.delta.y};
+    const Vector force = force_at(&w, w.h, state), mean = 1.0L / w.h * sums.impulse;
+    const Real results[RESULTS] = {creall(force), cimagl(force),       creall(mean),       cimagl(mean),
+                                   creall(start), cimagl(start),       sums.work,          sums.heat,
+                                   state.broke,   creall(state.delta), cimagl(state.delta)};
     for (int k = 0; k < RESULTS; k++) {
         result->result[k] = (double)results[k];
     }
@@ -916,6 +1339,6 @@ bool reference_settled_force(const ReferenceScene* scene, double force[2], doubl
     jump(NULL, &w, &state);
     const bool known = settle(&w, &state, &mean);
     *S = (double)w.S;
-    force[0] = (double)mean.x, force[1] = (double)mean.y;
+    force[0] = (double)creall(mean), force[1] = (double)cimagl(mean);
     return known;
 }

@@ -12,6 +12,8 @@ static const double MOST_KAPPA = 1e8;
 static const double MOST_PLANAR = 30.0;   // periods of a step,
 static const double MOST_LEAP = 400.0;    // and of a leap: of one whose inputs move
 static const double SHORTEST = 1e-9;      // s, of a step
+static const double NEARLY_NONE = 1e-9;   // m/s, across
+static const double MOST_NEAR_LINE = 3.3; // periods of a step, for the reference's sake
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
@@ -84,14 +86,15 @@ static void surfaces(ReferenceScene* s) {
     }
 }
 
-double scene_kappa(const ReferenceScene* s) {
+// A length [m] over that at which a bristle has the limit for its force.
+static double over_limit(const ReferenceScene* s, double length) {
     const ReferenceRest rest = reference_rest(s);
-    return rest.sigma * top_speed(s) / (TURN * s->f * fmax(rest.limit, 1e-250));
+    return rest.sigma * length / fmax(rest.limit, 1e-250);
 }
 
+double scene_kappa(const ReferenceScene* s) { return over_limit(s, top_speed(s) / (TURN * s->f)); }
 double scene_start_over_limit(const ReferenceScene* s) {
-    const ReferenceRest rest = reference_rest(s);
-    return rest.sigma * hypot(s->delta_0, s->delta_y_0) / fmax(rest.limit, 1e-250);
+    return over_limit(s, hypot(s->delta_0, s->delta_y_0));
 }
 
 double scene_gain(const ReferenceScene* s) {
@@ -101,6 +104,14 @@ double scene_gain(const ReferenceScene* s) {
     }
     const ReferenceRest rest = reference_rest(s);
     return 2.0 * rest.limit / rest.sigma * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
+}
+
+static double* stiffness(ReferenceScene* s) {
+    return s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale;
+}
+
+static double static_ratio(double chance_of_1) {
+    return random_chance(chance_of_1) ? 1.0 : 1.0 + random_log(1e-3, 2.0);
 }
 
 static void friction(ReferenceScene* s) {
@@ -113,9 +124,9 @@ static void friction(ReferenceScene* s) {
     s->load = random_log(1e-1, 1e3);
     const double most = random_chance(0.5) ? 1e3 : MOST_KAPPA;
     const double scale = random_log(LEAST_KAPPA, most) / scene_kappa(s);
-    *(s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale) *= scale;
+    *stiffness(s) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
-        s->staticRatio = random_chance(0.15) ? 1.0 : 1.0 + random_log(1e-3, 2.0);
+        s->staticRatio = static_ratio(0.15);
         s->V_S = top_speed(s) * random_log(1e-3, 10.0);
     }
     const double damping = reference_rest(s).limit / top_speed(s);
@@ -207,14 +218,13 @@ static void scale(double* value, double most) {
 }
 
 static void change_parameters(ReferenceScene* s) {
-    double* const factors[] = {&s->F_C, &s->mu, &s->V_S,
-                               s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale};
-    for (int k = 0; k < 4; k++) {
-        scale(factors[k], 3.0);
-    }
+    scale(&s->F_C, 3.0);
+    scale(&s->mu, 3.0);
+    scale(&s->V_S, 3.0);
+    scale(stiffness(s), 3.0);
     s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
     if (random_chance(0.2)) {
-        s->staticRatio = random_chance(0.2) ? 1.0 : 1.0 + random_log(1e-3, 2.0);
+        s->staticRatio = static_ratio(0.2);
     }
 }
 
@@ -312,7 +322,8 @@ static bool is_in_domain(const ReferenceScene* s) {
             fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
 
-Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
+Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
+    const bool plane = kind == PLANE;
     random_state = seed * 0xd1342543de82ef95u + number;
     random_bits();
     random_state ^= random_bits();
@@ -344,6 +355,12 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
             break;
         }
         sequence.step[sequence.steps++] = s;
+    }
+    ReferenceScene* first = &sequence.step[0];
+    if (kind == NEAR_LINE) {
+        sequence.steps = sequence.steps > 0 && (first->V != 0.0 || first->V_rate != 0.0 || first->V_1 != 0.0);
+        first->V_y = NEARLY_NONE;
+        first->h = vibrates(first) ? fmin(first->h, MOST_NEAR_LINE / first->f) : first->h;
     }
     return sequence;
 }

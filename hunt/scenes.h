@@ -6,8 +6,12 @@
 
 #include "sequence.h"
 
-// A sequence, which depends only on the seed and the number. plane: with a transverse vibration.
-Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane);
+// PLANE: with a transverse vibration. NEAR_LINE: the first step of a sequence that moves along a line, a few periods at the
+// most, with a V_y that is nearly none.
+typedef enum { ALONG, PLANE, NEAR_LINE } Kind;
+
+// A sequence, which depends only on its kind, the seed and the number.
+Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind);
 
 // sigma V / (2 pi f limit) at the scene's start, without its vibration.
 double scene_kappa(const ReferenceScene* scene);

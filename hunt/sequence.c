@@ -86,11 +86,9 @@ void sequence_text(const Sequence* sequence, char* text, size_t size) {
                 continue;
             }
             char word[40];
-            for (int digits = 6; digits <= 17; digits++) { // as few as give the same number again
-                snprintf(word, sizeof word, "%.*g", digits, value);
-                if (strtod(word, NULL) == value) {
-                    break;
-                }
+            snprintf(word, sizeof word, "%.15g", value);
+            if (strtod(word, NULL) != value) {
+                snprintf(word, sizeof word, "%.17g", value);
             }
             length += (size_t)snprintf(text + length, size - length, "%s=%s ", TABLE[k].name,
                                        is_choice(k) ? item_of(k, value) : word);
@@ -137,42 +135,37 @@ Sequence sequence_read(const char* text) {
     return sequence;
 }
 
-// Puts another word, or none, in place of a part of the text, if it still shows the miss.
-static bool replace(char* text, size_t begin, size_t length, const char* word, StillShows* shows) {
-    char plainer[SEQUENCE_TEXT];
-    snprintf(plainer, sizeof plainer, "%.*s%s%s", (int)begin, text, word, text + begin + length);
-    const Sequence sequence = sequence_read(plainer);
-    const bool still = shows(&sequence);
-    if (still) {
-        strcpy(text, plainer);
+// Makes the word that begins there plain; returns whether it could.
+static bool make_word_plain(char* text, size_t begin, StillShows* shows) {
+    static const int DIGITS[] = {0, 1, 2, 3, 5, 8, 12}; // 0: without the word
+    const size_t length = strcspn(text + begin, " ") + 1;
+    int name;
+    double value;
+    const bool is_number = sscanf(text + begin, "%*[^= ]=%n%lf", &name, &value) == 1;
+    for (int k = 0; k < (is_number ? 7 : 1); k++) {
+        char plainer[SEQUENCE_TEXT], word[100] = "";
+        if (k > 0) {
+            snprintf(word, sizeof word, "%.*s%.*g ", name, text + begin, DIGITS[k], value);
+        }
+        snprintf(plainer, sizeof plainer, "%.*s%s%s", (int)begin, text, word, text + begin + length);
+        const Sequence sequence = sequence_read(plainer);
+        if (strlen(word) < length && shows(&sequence)) {
+            strcpy(text, plainer);
+            return true;
+        }
     }
-    return still;
+    return false;
 }
 
 void make_plain(char* text, StillShows* shows) {
-    static const int DIGITS[] = {1, 2, 3, 5, 8, 12};
     for (bool changed = true; changed;) {
         changed = false;
-        size_t begin = strcspn(text, " ") + 1; // after the tolerance
-        while (text[begin]) {
-            const size_t length = strcspn(text + begin, " ") + 1;
-            if (replace(text, begin, length, "", shows)) {
+        for (size_t begin = strcspn(text, " ") + 1; text[begin];) { // after the tolerance
+            if (make_word_plain(text, begin, shows)) {
                 changed = true;
-                continue;
+            } else {
+                begin += strcspn(text + begin, " ") + 1;
             }
-            char word[100];
-            snprintf(word, sizeof word, "%.*s", (int)length, text + begin);
-            int name;
-            double value;
-            const bool is_number = sscanf(word, "%*[^=]=%n%lf", &name, &value) == 1;
-            for (size_t k = 0; is_number && k < sizeof DIGITS / sizeof *DIGITS; k++) {
-                snprintf(word + name, sizeof word - (size_t)name, "%.*g ", DIGITS[k], value);
-                if (strlen(word) < length && replace(text, begin, length, word, shows)) {
-                    changed = true;
-                    break;
-                }
-            }
-            begin += strcspn(text + begin, " ") + 1;
         }
     }
 }

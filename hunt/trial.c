@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "scenes.h"
 #include "settled_force.h"
@@ -9,10 +10,9 @@
 const char* const GRADE_NAMES[GRADES] = {"F_t", "F_y", "F_t_mean", "F_y_mean", "F_t_start", "F_y_start",
                                          "W_f", "Q_f", "side",     "delta",    "delta_y",   "settled"};
 
-static const double ROUNDING = 1e-11;        // of S, beside the tolerance
-static const double DIGITS = 1e-13;          // of a deflection: so near to its bound a bristle is on it
-static const double NEAR_LINE_PERIODS = 3.3; // of a step at the most, for the reference's sake
-static const double LEAST_S = 1e-20;         // N, and J: S and the path are 0 if nothing acts
+static const double ROUNDING = 1e-11; // of S, beside the tolerance
+static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
+static const double LEAST_S = 1e-20;  // N, and J: S and the path are 0 if nothing acts
 
 // ---- The FMU ----
 
@@ -48,25 +48,21 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     if (!run->started || !fc_friction_contact_refresh(&run->contact, &run->message)) {
         return false;
     }
-    step->result[F_T_START] = v->F_t;
-    step->result[F_Y_START] = v->F_y;
-    state->next_rate[FC_INPUT_V] = scene->V_rate;
-    state->next_rate[FC_INPUT_D] = scene->d_rate;
-    state->next_rate[FC_INPUT_E] = scene->E_rate;
-    state->next_rate[FC_INPUT_LOAD] = scene->load_rate;
-    state->next_rate[FC_INPUT_V_Y] = scene->V_y_rate;
+    const FcVector start = {v->F_t, v->F_y};
+    const double rates[] = {[FC_INPUT_V] = scene->V_rate,
+                            [FC_INPUT_D] = scene->d_rate,
+                            [FC_INPUT_E] = scene->E_rate,
+                            [FC_INPUT_LOAD] = scene->load_rate,
+                            [FC_INPUT_V_Y] = scene->V_y_rate};
+    memcpy(state->next_rate, rates, sizeof rates);
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
-    step->result[DELTA] = v->delta;
-    step->result[DELTA_Y] = v->delta_y;
-    step->result[F_T] = v->F_t;
-    step->result[F_Y] = v->F_y;
-    step->result[F_T_MEAN] = v->F_t_mean;
-    step->result[F_Y_MEAN] = v->F_y_mean;
-    step->result[SLIPS_AT_END] = state->slips != 0;
-    step->result[W_F] = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
-    step->result[Q_F] = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
+    const double work = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
+    const double heat = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
+    const double results[RESULTS] = {v->F_t, v->F_y, v->F_t_mean,       v->F_y_mean, start.x,   start.y,
+                                     work,   heat,   state->slips != 0, v->delta,    v->delta_y};
+    memcpy(step->result, results, sizeof results);
     *before = *state;
     return true;
 }
@@ -134,13 +130,11 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
     for (int k = 0; k < 6; k++) {
         ReferenceScene moved = taken->scene, past = before ? *before : moved;
-        const double way = k % 2 ? 1.0 : -1.0;
-        if (k < 4) {
-            *(k < 2 ? &moved.start : &moved.h) += way * ulp;
-        } else {
-            moved.delta_0 *= 1.0 + way * of_delta;
-            moved.delta_y_0 *= 1.0 + way * of_delta;
-        }
+        const double way = k % 2 ? 1.0 : -1.0, grown = k < 4 ? 1.0 : 1.0 + way * of_delta;
+        moved.start += k < 2 ? way * ulp : 0.0;
+        moved.h += k == 2 || k == 3 ? way * ulp : 0.0;
+        moved.delta_0 *= grown;
+        moved.delta_y_0 *= grown;
         past.start = moved.start;
         ReferenceStep found = taken->truth;
         if (moved.h > 0.0) {
@@ -236,50 +230,4 @@ void trial_run(Trial* trial, const Sequence* sequence) {
     }
     trial->message = run.message;
     fc_friction_contact_free(&run.contact);
-}
-
-// The step of a scene by the FMU and by the reference. False if the FMU refuses it.
-static bool take_first(TrialStep* taken, const Sequence* sequence, FcMessage* message) {
-    FmuRun run;
-    open_run(&run, &taken->scene, sequence);
-    const bool done = take_step(&run, &taken->scene, &taken->step);
-    *message = run.message;
-    fc_friction_contact_free(&run.contact);
-    if (done) {
-        step_of_reference(NULL, &taken->scene, &taken->step, &taken->truth);
-    }
-    return done;
-}
-
-void trial_near_line(Trial* trial, const Sequence* sequence, double V_y) {
-    *trial = (Trial){0};
-    TrialStep line = {.scene = sequence->step[0]};
-    ReferenceScene* scene = &line.scene;
-    const bool moves = scene->V != 0.0 || scene->V_rate != 0.0 || scene->V_1 != 0.0;
-    if (sequence->steps == 0 || !moves) {
-        return;
-    }
-    scene->h = vibrates(scene) ? fmin(scene->h, NEAR_LINE_PERIODS / scene->f) : scene->h;
-    TrialStep* near = &trial->taken[0];
-    *near = line;
-    near->scene.V_y = V_y;
-    near->verdict.ratio = -1.0;
-    trial->refused =
-        !take_first(&line, sequence, &trial->message) || !take_first(near, sequence, &trial->message);
-    trial->steps = !trial->refused;
-    trial->unknown = trial->steps > 0 && !(line.truth.known && near->truth.known);
-    if (trial->steps == 0 || trial->unknown > 0) {
-        return;
-    }
-    ReferenceStep range[2] = {line.truth, line.truth};
-    for (int k = 0; k < RESULTS; k++) {
-        const double found = line.step.result[k];
-        const double moved = found + (near->truth.result[k] - line.truth.result[k]);
-        range[0].result[k] = fmin(found, moved);
-        range[1].result[k] = fmax(found, moved);
-    }
-    const Verdict apart = verdict_outside(near, range, 2.0 * sequence->tolerance);
-    trial->unknown = !(apart.ratio <= 1.0) && is_outside(&near->scene, &near->scene);
-    near->verdict = trial->unknown > 0 ? near->verdict : apart;
-    trial->worst = near->verdict.ratio;
 }

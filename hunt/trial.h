@@ -1,25 +1,20 @@
 // A sequence of steps taken by the FMU. The reference grades each step from the FMU's state before it.
-//
-// The rule: S is the largest force of the step (reference.h). The path is the way of the surfaces and of the bristle:
-// integral of |V| dt + |delta_end - delta_start|.
-// - F_t, F_t_mean and F_t_start, the force after a jump or a settled start, are within tolerance S. F_y likewise.
-// - The W_f and Q_f of the step are within tolerance S path.
-// - A bristle with static friction slips at the end if and only if the reference's bristle does.
-// - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
-// The allowances are for rounding alone:
+// The rule is that of docs/numerics.md: the forces at the end, their means, and those after a jump or a settled start are within
+// tolerance S; the W_f and Q_f of the step within tolerance S path; a bristle with static friction slips at the end if and
+// only if the reference's does; F_t_settled, at the first step, is within tolerance S if the reference finds periods that
+// repeat. The path is integral of |V| dt + |delta_end - delta_start|. The allowances are for rounding alone:
 // - 1e-11 S, or S path.
 // - 1e-13 |delta| of both ends, times S, or the elastic force before a jump of inputs, for W_f and Q_f and times sigma_1 over
 //   the step for F_t_mean, since a bristle so near to its bound lies on it; and 20 eps more in each period: of two
 //   meetings, each with the rounding of D, whose exponent may be 10.
-// - The change of the reference if the step's own start and length move by two units in their last place.
-// - The same if the deflection before the step moves by 2e-10 of itself: at its static bound a bristle may have broken
-//   away or not. If the motion may be chaotic (scene_gain above 2), the deflection moves by the tolerance.
+// - The change of the reference if the step's own start and length move by two units in their last place, or the deflection
+//   before it by 2e-10 of itself: at its static bound a bristle may have broken away or not. If the motion may be chaotic
+//   (scene_gain above 2), the deflection moves by the tolerance.
 // - A bristle within 1e-10 of its kinetic bound, or within 1e-11 of its static bound, lies on it. S is at least 1e-20 N,
 //   and the allowed error of an energy at least 1e-20 J.
 // A settled start is judged by F_t_start. A step is counted and not judged if it takes more panels or cycles than the
-// reference goes through. The same holds for a step that misses if its motion may be chaotic and it has more than 10
-// periods, if its kappa is below 1e-3 as over a lifted tool, if it starts beyond 100 limits, or if the sequence starts from a
-// settled state that is not promised.
+// reference goes through; and if it misses while its motion may be chaotic and it has more than 10 periods, its kappa is below
+// 1e-3 as over a lifted tool, it starts beyond 100 limits, or the sequence starts from a settled state that is not promised.
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 
@@ -61,9 +56,5 @@ typedef struct {
 } Trial;
 
 void trial_run(Trial* trial, const Sequence* sequence);
-
-// The first step of a sequence in which V moves along a line, for some periods at the most, and once more with V_y [m/s]
-// across, which is nearly none. The results may differ by two tolerances, beside the difference of the reference's.
-void trial_near_line(Trial* trial, const Sequence* sequence, double V_y);
 
 #endif

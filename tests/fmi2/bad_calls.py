@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from ctypes import c_char_p, c_double, c_int, c_uint
 from dataclasses import dataclass
+from typing import Any
 
 from fmi_library import CO_SIMULATION, MODEL_EXCHANGE, STATES, Instance
 
@@ -52,6 +53,16 @@ def _moved(name: str, rate: float, h: float, *named: str, **values: float) -> Ba
         mend=lambda i: i.set_input_rates({name: 0.0}),
     )
 
+
+INSTANTIATIONS: dict[str, tuple[dict[str, Any], str]] = {  # the arguments and the message
+    "another FMU's guid": (
+        {"guid": "{00000000-0000-0000-0000-000000000000}"},
+        "the guid is {00000000-0000-0000-0000-000000000000}",
+    ),
+    "fmuType = 17": ({"kind": 17}, "fmuType = 17 is neither fmi2ModelExchange (0) nor fmi2CoSimulation (1)"),
+    "an empty instance name": ({"name": ""}, "the instance name is"),
+    "no instance name": ({"name": None}, "the instance name is missing"),
+}
 
 CALLS = [
     _set("V", math.nan, "nan"),
@@ -115,6 +126,8 @@ CALLS = [
     ),
     _moved("d", -0.2, 1e-4, "d ", "1.4e-05", "-6e-06"),
     _moved("E", 1e16, 1e-4, "E "),
+    _moved("E", 9.1 * 58.556936e13, 1e-4, "E ", "5.8556"),  # to 10.1 times its value
+    _moved("E", -0.901 * 58.556936e13, 1e-4, "E ", "5.8556"),  # to 0.099
     _moved("V", 1.7e308, 1e4, "V"),
     _moved("V", 1e-6, 100.0, "50 s", **{"vibration.V_1": 0.4}),
     BadCall(

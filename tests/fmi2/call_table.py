@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_void_p
 
 from fmi_library import (
     CO_SIMULATION,
@@ -11,7 +11,6 @@ from fmi_library import (
     MODEL_EXCHANGE,
     SIGNATURES,
     TERMINATED_STATUS,
-    EventInfo,
     Instance,
 )
 from fmi_library import STATES as CONTINUOUS_STATES
@@ -72,33 +71,17 @@ def allowed(kind: int) -> dict[str, set[str]]:
 
 
 def good_arguments(instance: Instance, function: str) -> tuple[object, ...]:
-    """With which the function succeeds wherever the call is legal: nothing, of 0 values, or these."""
-    if function.endswith(("FMUstate", "FMUstateSize")):
-        return state_arguments(instance, function)
-    vector = (c_double * CONTINUOUS_STATES)()
-    arguments: dict[str, tuple[object, ...]] = {
-        "fmi2GetStatus": (0, (c_int * 1)()),
-        "fmi2GetRealStatus": (LAST_SUCCESSFUL_TIME, (c_double * 1)()),
-        "fmi2GetIntegerStatus": (0, (c_int * 1)()),
-        "fmi2GetBooleanStatus": (TERMINATED_STATUS, (c_int * 1)()),
-        "fmi2GetStringStatus": (1, (c_char_p * 1)()),
-        "fmi2NewDiscreteStates": (byref(EventInfo()),),
-        "fmi2CompletedIntegratorStep": (1, (c_int * 1)(), (c_int * 1)()),
-    }
-    if SIGNATURES[function] == [POINTER(c_double), c_size_t]:
-        return vector, CONTINUOUS_STATES
-    zeros = {c_int: 0, c_size_t: 0, c_double: 0.0}
-    return arguments.get(function, tuple(zeros.get(each) for each in SIGNATURES[function]))
-
-
-def state_arguments(instance: Instance, function: str) -> tuple[object, ...]:
-    state = instance.save()
+    """With which the function succeeds wherever the call is legal."""
+    state, signature = instance.save(), SIGNATURES[function]
     data = instance.serialize(state)
-    return {
-        "fmi2GetFMUstate": (byref(state),),
-        "fmi2SetFMUstate": (state,),
-        "fmi2FreeFMUstate": (byref(state),),
-        "fmi2SerializedFMUstateSize": (state, byref(c_size_t())),
-        "fmi2SerializeFMUstate": (state, ctypes.create_string_buffer(len(data)), len(data)),
-        "fmi2DeSerializeFMUstate": (data, len(data), byref(state)),
-    }[function]
+    kinds = {"GetReal": LAST_SUCCESSFUL_TIME, "GetBoolean": TERMINATED_STATUS, "GetString": 1}
+    size = len(data) if "erialize" in function else 0
+    known = {
+        c_int: kinds.get(function[4:].removesuffix("Status"), 0),
+        c_size_t: CONTINUOUS_STATES if signature == [POINTER(c_double), c_size_t] else size,
+        c_double: 0.0,
+        c_void_p: state,
+        c_char_p: ctypes.create_string_buffer(data, len(data)),
+        POINTER(c_void_p): byref(state),
+    }
+    return tuple(known[each] if each in known else (each._type_ * 8)() for each in signature)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import fmpy
+from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi2 import fmi2EventInfo as EventInfo
 
 from workshop import description
 
@@ -16,64 +21,22 @@ OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 MODEL_EXCHANGE, CO_SIMULATION = range(2)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED_STATUS = range(4)
 
-LOGGER = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)
+
+def _type(argument: str) -> Any:
+    """Of an argument as the standard's header declares it."""
+    if "fmi2Byte" in argument:
+        return c_char_p
+    name = re.search(r"fmi2\w+|size_t", argument)[0]
+    value = {"size_t": c_size_t, "fmi2Status": c_int}.get(name) or getattr(fmpy.fmi2, name)
+    return POINTER(value) if re.search(r"[*[]", argument) else value
 
 
-class Callbacks(ctypes.Structure):
-    _fields_ = [
-        ("logger", LOGGER),
-        ("allocateMemory", c_void_p),
-        ("freeMemory", c_void_p),
-        ("stepFinished", c_void_p),
-        ("componentEnvironment", c_void_p),
-    ]
-
-
-class EventInfo(ctypes.Structure):
-    _fields_ = [
-        ("newDiscreteStatesNeeded", c_int),
-        ("terminateSimulation", c_int),
-        ("nominalsOfContinuousStatesChanged", c_int),
-        ("valuesOfContinuousStatesChanged", c_int),
-        ("nextEventTimeDefined", c_int),
-        ("nextEventTime", c_double),
-    ]
-
-
-_GET = [POINTER(c_uint), c_size_t]
-_KIND, _OUT = POINTER(c_int), POINTER(c_double)
-SIGNATURES: dict[str, list[Any]] = {
-    "fmi2SetDebugLogging": [c_int, c_size_t, POINTER(c_char_p)],
-    "fmi2SetupExperiment": [c_int, c_double, c_double, c_int, c_double],
-    "fmi2GetFMUstate": [POINTER(c_void_p)],
-    "fmi2SetFMUstate": [c_void_p],
-    "fmi2FreeFMUstate": [POINTER(c_void_p)],
-    "fmi2SerializedFMUstateSize": [c_void_p, POINTER(c_size_t)],
-    "fmi2SerializeFMUstate": [c_void_p, c_char_p, c_size_t],
-    "fmi2DeSerializeFMUstate": [c_char_p, c_size_t, POINTER(c_void_p)],
-    "fmi2GetDirectionalDerivative": [*_GET, *_GET, _OUT, _OUT],
-    "fmi2SetRealInputDerivatives": [*_GET, _KIND, _OUT],
-    "fmi2GetRealOutputDerivatives": [*_GET, _KIND, _OUT],
-    "fmi2DoStep": [c_double, c_double, c_int],
-    "fmi2NewDiscreteStates": [POINTER(EventInfo)],
-    "fmi2CompletedIntegratorStep": [c_int, _KIND, _KIND],
-    "fmi2SetTime": [c_double],
+HEADER = (Path(fmpy.__file__).parent / "c-code" / "fmi2FunctionTypes.h").read_text()
+# The arguments of each function of an instance, besides the instance.
+SIGNATURES = {
+    name: [_type(argument) for argument in arguments.split(",")[1:]]
+    for name, arguments in re.findall(r"typedef fmi2Status\s+(\w+)TYPE\s*\(([^)]*)\);", HEADER)
 }
-for _type, _pointer in (
-    ("Real", _OUT),
-    ("Integer", _KIND),
-    ("Boolean", _KIND),
-    ("String", POINTER(c_char_p)),
-):
-    SIGNATURES |= {f"fmi2{way}{_type}": [*_GET, _pointer] for way in ("Get", "Set")}
-    SIGNATURES[f"fmi2Get{_type}Status"] = [c_int, _pointer]
-SIGNATURES["fmi2GetStatus"] = [c_int, _KIND]
-_VECTORS = "SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates"
-for _name in (*_VECTORS.split(), "GetNominalsOfContinuousStates"):
-    SIGNATURES[f"fmi2{_name}"] = [_OUT, c_size_t]
-for _name in """EnterInitializationMode ExitInitializationMode Terminate Reset CancelStep EnterEventMode
-    EnterContinuousTimeMode""".split():
-    SIGNATURES[f"fmi2{_name}"] = []
 
 
 @dataclass(frozen=True)
@@ -96,7 +59,15 @@ class Library:
         for name, arguments in SIGNATURES.items():
             getattr(self.dll, name).argtypes = [c_void_p, *arguments]
         text = c_char_p
-        self.dll.fmi2Instantiate.argtypes = [text, c_int, text, text, POINTER(Callbacks), c_int, c_int]
+        self.dll.fmi2Instantiate.argtypes = [
+            text,
+            c_int,
+            text,
+            text,
+            POINTER(fmi2CallbackFunctions),
+            c_int,
+            c_int,
+        ]
         self.dll.fmi2Instantiate.restype = c_void_p
         self.dll.fmi2FreeInstance.argtypes = [c_void_p]
         self.dll.fmi2FreeInstance.restype = None
@@ -120,8 +91,8 @@ class Instance:
         self.library = library
         self.kind = kind
         self.messages: list[LogMessage] = []
-        self._logger = LOGGER(self._log) if with_logger else LOGGER()
-        self._callbacks = Callbacks(logger=self._logger)
+        self._logger = fmi2CallbackLoggerTYPE(*[self._log] * with_logger)
+        self._callbacks = fmi2CallbackFunctions(logger=self._logger)
         self.component = library.dll.fmi2Instantiate(
             None if name is None else name.encode(),
             kind,
@@ -175,6 +146,17 @@ class Instance:
         if state == "terminated":
             assert self.call("fmi2Terminate") == OK
 
+    def start(
+        self,
+        choices: Mapping[str, int] | None = None,
+        values: Mapping[str, float] | None = None,
+        state: str = "step complete",
+    ) -> Instance:
+        """Set while instantiated, then brought to a state."""
+        assert self.choose(choices or {}) == OK and self.set(values or {}) == OK, self.messages
+        self.bring_to(state)
+        return self
+
     # model exchange
 
     def new_discrete_states(self) -> EventInfo:
@@ -189,26 +171,26 @@ class Instance:
         assert self.call("fmi2EnterContinuousTimeMode") == OK
         return info
 
+    def vector(self, function: str, size: int = STATES) -> list[float]:
+        """That a function of model exchange gives."""
+        vector = (c_double * size)()
+        assert self.call(function, vector, size) == OK, self.messages
+        return list(vector)
+
     def states(self) -> list[float]:
         """delta, W_f, Q_f, delta_y."""
-        x = (c_double * STATES)()
-        assert self.call("fmi2GetContinuousStates", x, STATES) == OK, self.messages
-        return list(x)
+        return self.vector("fmi2GetContinuousStates")
+
+    def rates(self) -> list[float]:
+        return self.vector("fmi2GetDerivatives")
+
+    def indicators(self) -> list[float]:
+        return self.vector("fmi2GetEventIndicators", INDICATORS)
 
     def put_states(self, *x: float) -> int:
         """Those of states(); delta_y may be left out: 0."""
         x = (*x, 0.0) if len(x) == STATES - 1 else x
         return self.call("fmi2SetContinuousStates", (c_double * len(x))(*x), len(x))
-
-    def rates(self) -> list[float]:
-        rates = (c_double * STATES)()
-        assert self.call("fmi2GetDerivatives", rates, STATES) == OK, self.messages
-        return list(rates)
-
-    def indicators(self) -> list[float]:
-        z = (c_double * INDICATORS)()
-        assert self.call("fmi2GetEventIndicators", z, INDICATORS) == OK, self.messages
-        return list(z)
 
     def step_completed(self) -> bool:
         """Whether the FMU wants an event."""
@@ -222,18 +204,18 @@ class Instance:
 
     # values
 
-    def references(self, names: Sequence[str]) -> Any:
+    def references(self, names: Collection[str]) -> Any:
         return (c_uint * len(names))(*(self.library.variables[name].valueReference for name in names))
 
     def set(self, values: Mapping[str, float]) -> int:
         """Sets Reals in one call."""
         reals = (c_double * len(values))(*values.values())
-        return self.call("fmi2SetReal", self.references(list(values)), len(values), reals)
+        return self.call("fmi2SetReal", self.references(values), len(values), reals)
 
     def choose(self, values: Mapping[str, int]) -> int:
         """Sets Enumerations in one call."""
         integers = (c_int * len(values))(*values.values())
-        return self.call("fmi2SetInteger", self.references(list(values)), len(values), integers)
+        return self.call("fmi2SetInteger", self.references(values), len(values), integers)
 
     def get(self, *names: str) -> list[float]:
         reals = (c_double * len(names))()
@@ -250,8 +232,7 @@ class Instance:
     def set_input_rates(self, rates: Mapping[str, float], order: int = 1) -> int:
         orders = (c_int * len(rates))(*([order] * len(rates)))
         values = (c_double * len(rates))(*rates.values())
-        references = self.references(list(rates))
-        return self.call("fmi2SetRealInputDerivatives", references, len(rates), orders, values)
+        return self.call("fmi2SetRealInputDerivatives", self.references(rates), len(rates), orders, values)
 
     def output_rate(self, name: str, order: int = 1) -> tuple[int, float]:
         value = (c_double * 1)()
@@ -264,12 +245,8 @@ class Instance:
         result = (c_double * len(unknowns))()
         status = self.call(
             "fmi2GetDirectionalDerivative",
-            self.references(unknowns),
-            len(unknowns),
-            self.references(list(direction)),
-            len(direction),
-            (c_double * len(direction))(*direction.values()),
-            result,
+            *(self.references(unknowns), len(unknowns), self.references(direction), len(direction)),
+            *((c_double * len(direction))(*direction.values()), result),
         )
         return status, list(result)
 
@@ -296,6 +273,12 @@ class Instance:
     def deserialize(self, data: bytes) -> tuple[int, c_void_p]:
         state = c_void_p()
         return self.call("fmi2DeSerializeFMUstate", data, len(data), byref(state)), state
+
+    def become(self, data: bytes) -> Instance:
+        """Goes to the state of those bytes."""
+        status, state = self.deserialize(data)
+        assert (status, self.restore(state), self.drop(state)) == (OK, OK, OK), self.messages
+        return self
 
     def fingerprint(self) -> bytes:
         """Everything that the instance will do depends on these bytes."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from ctypes import c_double
 
 import numpy as np
 import pytest
@@ -19,20 +18,15 @@ OUTPUTS = tuple(
     if variable["causality"] == "output" and not variable["name"].endswith("_settled")
 )
 STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5, "load": 3e-4, "V_y": 1e-6}
-ELASTIC_PLASTIC, LUGRE = {"friction.model": 3}, {"friction.model": 4}
+ELASTIC_PLASTIC = {"friction.model": 3}
 LIMIT_BY_LOAD, PRESSED = {"friction.limit": 2}, {"friction.limit": 2, "contact.input": 2}
 DAMPED = {"friction.sigma_1": 20.0, "friction.sigma_2": 30.0}
 STRIBECK = {"friction.staticRatio": 1.4, "friction.V_S": 0.01}
 FORCES = ("F_t", "F_y")
-INPUTS = ("V", "d", "E", "load")
 # A bristle that slips stays on the bound while the bound comes nearer: where an input moves this way.
 NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0, "V_y": 1.0}
-VIBRATING_SURFACES = {
-    "contact.stiffnessScale": 1e-5,
-    "friction.sigma_1": 200.0,
-    "vibration.a_d": 1e-6,
-    "vibration.phase_d": 0.7,
-}
+VIBRATING_SURFACES = {"vibration.a_d": 1e-6, "vibration.phase_d": 0.7}
+VIBRATING_SURFACES |= {"contact.stiffnessScale": 1e-5, "friction.sigma_1": 200.0}
 SLIPPING = {
     "the limit follows the load": (LIMIT_BY_LOAD, {}),
     "in the plane": (PRESSED, {**VIBRATING_SURFACES, "V_y": 0.3}),
@@ -44,10 +38,7 @@ SLIPPING = {
 def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], scene: str) -> None:
     """By one-sided differences, whose error falls with the step: extrapolated from two."""
     choices, values = SLIPPING[scene]
-    instance = new_instance()
-    assert instance.choose({**ELASTIC_PLASTIC, **choices}) == OK
-    assert instance.set({**DAMPED, **values, "V": 0.5}) == OK
-    instance.initialize()
+    instance = new_instance().start(ELASTIC_PLASTIC | choices, DAMPED | values | {"V": 0.5})
     assert instance.step(0.0, 1.23e-5) == OK
     for name, side in NEARER.items():
         status, exact = instance.directional(FORCES, {name: 1.0})
@@ -78,10 +69,10 @@ JUMPS = {  # a sliding contact, and values that jump after a step
 @pytest.mark.parametrize("jump", JUMPS)
 def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instance], jump: str) -> None:
     choices, before, after = JUMPS[jump]
-    instance = new_instance()
-    assert instance.choose({**ELASTIC_PLASTIC, "contact.model": 2, **choices}) == OK
-    assert instance.set({"friction.staticRatio": 1.5, "friction.V_S": 0.1, "V": 0.2, **before}) == OK
-    instance.initialize()
+    instance = new_instance().start(
+        ELASTIC_PLASTIC | {"contact.model": 2} | choices,
+        {"friction.staticRatio": 1.5, "friction.V_S": 0.1, "V": 0.2} | before,
+    )
     assert instance.step(0.0, 1e-3) == OK
     assert instance.set({"V": -0.15, **after}) == OK
     limits = ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma")
@@ -96,8 +87,7 @@ def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instanc
 
 
 def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
-    assert instance.set({"delta_0": 2e-9}) == OK
-    instance.initialize()
+    instance.start(values={"delta_0": 2e-9})
     assert instance.step(0.0, 1e-9) == OK
     direction = {"V": 0.3, "d": -2e-7, "E": 4e8}
     parts = [instance.directional(OUTPUTS, {name: slope})[1] for name, slope in direction.items()]
@@ -108,12 +98,9 @@ def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
 
 
 @pytest.mark.parametrize("d", [1e-11, 3e-10])
-def test_a_jump_that_moves_the_bristle_a_little(new_instance: Callable[..., Instance], d: float) -> None:
+def test_a_jump_that_moves_the_bristle_a_little(instance: Instance, d: float) -> None:
     """On the bound F_t is mu F_n, and F_n goes with exp(-lambda d / R_q), though less d moves nothing."""
-    instance = new_instance()
-    assert instance.choose({"friction.model": 1, "friction.limit": 2, "contact.model": 2}) == OK
-    assert instance.set({"V": 0.1}) == OK
-    instance.initialize()
+    instance.start({"friction.model": 1, "friction.limit": 2, "contact.model": 2}, {"V": 0.1})
     assert instance.step(0.0, 1e-2) == OK
     assert instance.set({"d": 14e-6 + d}) == OK
     status, (slope,) = instance.directional(["F_t"], {"d": 1.0})
@@ -144,29 +131,21 @@ def drawn(number: int) -> tuple[dict[str, int], dict[str, float], float]:
     stiffness, V_1 = between(1e6, 1e9), between(1e-2, 1.0)
     across = number // 4 % 2
     reach = between(0.2, 0.9) * 20.0 / stiffness  # within the least bound
-    values = {
-        "V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0),
-        "V_y": across * between(1e-2, 1.0),
-        "d": 14e-6 * between(0.9, 1.1),
-        "E": 58e9 * between(0.5, 2.0),
+    values = {"V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0), "V_y": across * between(1e-2, 1.0)}
+    values |= {"d": 14e-6 * between(0.9, 1.1), "E": 58e9 * between(0.5, 2.0)}
+    values |= {
         "load": 312.0 * between(0.7, 1.4),
         "F_C": between(30.0, 90.0),
         "friction.mu": between(0.12, 0.3),
-        "friction.staticRatio": 1.0 + between(0.1, 1.0),
-        "friction.V_S": between(0.1, 1.0),
-        "friction.sigma_1": between(0.1, 10.0),
-        "friction.sigma_2": between(0.1, 10.0),
-        "contact.sigma": stiffness,
-        "contact.stiffnessScale": between(0.5, 2.0) * (1e-6 if choices["contact.model"] == 1 else 1e-3),
-        "vibration.f": between(1e4, 4e4),
-        "vibration.V_1": V_1,
-        "vibration.a_d": between(1e-7, 2e-6),
-        "vibration.phase_d": float(rng.uniform(-3.0, 3.0)),
-        "vibration.V_2": across * V_1 * between(0.1, 1.0),
-        "vibration.phase_2": float(rng.uniform(-3.0, 3.0)),
-        "delta_0": reach,
-        "delta_y_0": across * reach * float(rng.uniform(-0.5, 0.5)),
     }
+    values |= {"friction.staticRatio": 1.0 + between(0.1, 1.0), "friction.V_S": between(0.1, 1.0)}
+    values |= {"friction.sigma_1": between(0.1, 10.0), "friction.sigma_2": between(0.1, 10.0)}
+    scale = between(0.5, 2.0) * (1e-6 if choices["contact.model"] == 1 else 1e-3)
+    values |= {"contact.sigma": stiffness, "contact.stiffnessScale": scale, "vibration.f": between(1e4, 4e4)}
+    values |= {"vibration.V_1": V_1, "vibration.V_2": across * V_1 * between(0.1, 1.0)}
+    values |= {"vibration.a_d": between(1e-7, 2e-6)}
+    values |= {f"vibration.phase_{which}": float(rng.uniform(-3.0, 3.0)) for which in "d2"}
+    values |= {"delta_0": reach, "delta_y_0": across * reach * float(rng.uniform(-0.5, 0.5))}
     return choices, values, between(1e-6, 1e-4)
 
 
@@ -192,7 +171,7 @@ def by_richardson(
     start, *here = instance.get(name, *unknown)
 
     def at(x: float) -> np.ndarray:
-        set_it = instance.call("fmi2SetTime", c_double(x)) if name == "time" else instance.set({name: x})
+        set_it = instance.call("fmi2SetTime", x) if name == "time" else instance.set({name: x})
         assert set_it == OK
         return np.array(instance.get(*unknown))
 
@@ -215,16 +194,11 @@ def prepared(
 ) -> tuple[Instance, dict[str, float]]:
     """After a step of co-simulation; in model exchange at some time, slipping in a third of the scenes."""
     choices, values, t = drawn(number)
-    instance = new_instance(kind=kind)
-    slips = kind == MODEL_EXCHANGE and number % 3 == 0
-    assert instance.choose(choices) == OK
-    assert instance.set(values | ({"delta_0": 1e-3} if slips else {})) == OK
-    if kind == CO_SIMULATION:
-        instance.initialize()
-        assert instance.step(0.0, t) == OK
-    else:
-        instance.bring_to("continuous-time mode")
-        assert instance.call("fmi2SetTime", c_double(t)) == OK
+    slips = {"delta_0": 1e-3} if kind == MODEL_EXCHANGE and number % 3 == 0 else {}
+    state = "step complete" if kind == CO_SIMULATION else "continuous-time mode"
+    instance = new_instance(kind=kind).start(choices, values | slips, state)
+    moved = instance.step(0.0, t) if kind == CO_SIMULATION else instance.call("fmi2SetTime", t)
+    assert moved == OK
     return instance, values
 
 
@@ -267,9 +241,7 @@ def test_of_the_settled_force(instance: Instance, number: int) -> None:
     choices, values, _ = drawn(number)
     if choices == {**choices, **ELASTIC_PLASTIC}:
         values["friction.staticRatio"] = 1.0  # else it takes long
-    assert instance.choose(choices) == OK
-    assert instance.set(values | {"solver.tolerance": 1e-12}) == OK
-    instance.initialize()
+    instance.start(choices, values | {"solver.tolerance": 1e-12})
     here, asked = np.hypot(*instance.get(*SETTLED)), 0
     for name in (*STEPS, *TUNABLE):
         scale = scale_of(name, values) if values.get(name) else 0.0
@@ -299,10 +271,7 @@ REFUSED = {
 @pytest.mark.parametrize("case", REFUSED)
 def test_what_is_no_derivative_is_refused(new_instance: Callable[..., Instance], case: str) -> None:
     choices, values, state, unknown, known, reason = REFUSED[case]
-    instance = new_instance(logging_on=True)
-    assert instance.choose(choices) == OK
-    assert instance.set(values) == OK
-    instance.bring_to(state)
+    instance = new_instance(logging_on=True).start(choices, values, state)
     before = instance.fingerprint()
     assert instance.directional([unknown], {known: 1.0})[0] == ERROR
     assert re.search(reason, instance.last_message.text)

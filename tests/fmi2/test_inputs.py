@@ -41,19 +41,16 @@ def test_what_a_scene_does_not_use_may_be_any_number(
         pytest.skip("model exchange has no Coulomb")
     expected = None
     for value in (None, *ANY):
-        instance = new_instance(kind=kind)
-        assert instance.choose(choices) == OK
-        assert instance.set({"vibration.V_1": 0.1, "vibration.a_d": 1e-7}) == OK
-        assert value is None or instance.set({name: value}) == OK
-        instance.bring_to("continuous-time mode" if exchange else "step complete")
+        values = {"vibration.V_1": 0.1, "vibration.a_d": 1e-7} | ({} if value is None else {name: value})
+        state = "continuous-time mode" if exchange else "step complete"
+        instance = new_instance(kind=kind).start(choices, values, state)
         found = outputs(instance, exchange)
         expected = found if expected is None else expected
         assert found == expected, value
 
 
 def test_an_unused_input_may_move_through_0(instance: Instance) -> None:
-    assert instance.choose(CONSTANT) == OK
-    instance.initialize()
+    instance.start(CONSTANT)
     assert instance.set_input_rates({"d": -1.0, "E": -1e12, "load": -1e5}) == OK
     F_n = instance.get("F_n")
     assert instance.step(0.0, 1e-6) == OK
@@ -66,8 +63,7 @@ def test_an_unused_input_may_move_through_0(instance: Instance) -> None:
 
 @pytest.mark.parametrize("law", [2, 3], ids=["Coulomb", "ElasticPlastic"])
 def test_an_unused_load_that_moves_is_the_normal_force(instance: Instance, law: int) -> None:
-    assert instance.choose(CONSTANT | BY_LOAD | {"friction.model": law}) == OK
-    instance.initialize()
+    instance.start(CONSTANT | BY_LOAD | {"friction.model": law})
     assert instance.set({"load": 100.0}) == OK
     assert instance.set_input_rates({"load": 5e4, "E": 1e12}) == OK
     assert instance.get("F_n") == [pytest.approx(100.0, rel=1e-12)]
@@ -105,10 +101,7 @@ def test_a_used_input_of_0_is_refused_with_a_hint(
     start = {"d": 14e-6, "E": 58e9}
     for kind in (CO_SIMULATION, MODEL_EXCHANGE):
         for value in (0.0, -0.0, -1.0):
-            instance = new_instance(kind=kind)
-            assert instance.choose(choices) == OK
-            assert instance.set({name: value}) == OK
-            instance.bring_to("initialization")
+            instance = new_instance(kind=kind).start(choices, {name: value}, "initialization")
             assert instance.call("fmi2ExitInitializationMode") == ERROR
             text = instance.last_message.text
             assert f"{name} = {value:g}" in text and "above 0" in text
@@ -124,12 +117,9 @@ MU, SIGMA, DAMPING, LOAD, RATE, H = 0.2, 2e6, 500.0, 100.0, 2e4, 1e-3
 
 
 def slipping(new_instance: Callable[..., Instance], kind: int = CO_SIMULATION) -> Instance:
-    instance = new_instance(kind=kind)
     choices = {"friction.model": 3, "friction.limit": 2, "contact.model": 2, "contact.input": 2}
-    assert instance.choose(choices) == OK
     values = {"friction.mu": MU, "contact.sigma": SIGMA, "friction.sigma_1": DAMPING}
-    assert instance.set({**values, "load": LOAD, "V": 0.5}) == OK
-    return instance
+    return new_instance(kind=kind).start(choices, values | {"load": LOAD, "V": 0.5}, "instantiated")
 
 
 def force(load: float, rate: float) -> float:
@@ -148,9 +138,8 @@ def moved(new_instance: Callable[..., Instance]) -> Instance:
 
 def test_a_rate_counts_until_the_input_is_set_again(new_instance: Callable[..., Instance]) -> None:
     """A new one is seen at once, and lasts one step. A saved state knows."""
-    instance, fresh = moved(new_instance), new_instance()
-    status, state = fresh.deserialize(instance.fingerprint())
-    assert (status, fresh.restore(state), fresh.drop(state)) == (OK, OK, OK)
+    instance = moved(new_instance)
+    fresh = new_instance().become(instance.fingerprint())
     assert fresh.get("F_t") == [force(120.0, RATE)]
     assert fresh.set_input_rates({"load": -RATE}) == OK
     assert fresh.get("F_t") == [force(120.0, -RATE)]
@@ -187,16 +176,11 @@ def test_the_force_of_model_exchange_knows_no_rates(new_instance: Callable[..., 
         instance.step_completed()
 
 
-@pytest.mark.parametrize(
-    ("start", "h", "steps"),
-    [(0.0, 0.1, 100_000), (1e6, 1e-6, 100_000)],
-)
-def test_a_host_may_add_its_steps_up_to_the_stop_time(
-    instance: Instance, start: float, h: float, steps: int
-) -> None:
+@pytest.mark.parametrize(("start", "h"), [(0.0, 0.1), (1e6, 1e-6)])
+def test_a_host_may_add_its_steps_up_to_the_stop_time(instance: Instance, start: float, h: float) -> None:
     """The sums err by up to 2 of their steps; a step that begins at the stop time is refused."""
-    times = np.cumsum(np.concatenate(([start], np.full(steps, h))))
-    stop = start + steps * h
+    times = np.cumsum(np.concatenate(([start], np.full(100_000, h))))
+    stop = start + 100_000 * h
     instance.initialize(start=start, stop=stop)
     last = float(times[-2])
     assert instance.step(start, last - start) == OK

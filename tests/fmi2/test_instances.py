@@ -7,24 +7,16 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from bad_calls import INSTANTIATIONS
 from fmi_library import CO_SIMULATION, OK, Instance, Library
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (
-            {"guid": "{00000000-0000-0000-0000-000000000000}"},
-            "the guid is {00000000-0000-0000-0000-000000000000}",
-        ),
-        ({"kind": 17}, "fmuType = 17 is neither fmi2ModelExchange (0) nor fmi2CoSimulation (1)"),
-        ({"name": None}, "the instance name is missing"),
-    ],
-)
-def test_refused_instantiation(library: Library, arguments: dict[str, object], told: str) -> None:
-    refused = Instance(library, **arguments)  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", INSTANTIATIONS)
+def test_refused_instantiation(library: Library, case: str) -> None:
+    arguments, told = INSTANTIATIONS[case]
+    refused = Instance(library, **arguments)
     assert refused.component is None
     assert len(refused.messages) == 1
     assert refused.last_message.category == "logStatusError"
@@ -51,26 +43,17 @@ def test_any_name_and_resource_location(new_instance: Callable[..., Instance], t
     assert instance.step(0.0, 1e-5) == OK
 
 
-def scene(number: int) -> dict[str, float]:
-    chance = random.Random(number)
-    return {
-        "V": chance.uniform(-0.5, 0.5),
-        "d": chance.uniform(13e-6, 17e-6),
-        "F_C": chance.uniform(10, 100),
-        "contact.stiffnessScale": 10 ** chance.uniform(-6, 0),
-        "vibration.V_1": chance.choice([0.0, 0.3]),
-        "vibration.a_d": chance.choice([0.0, 1e-6]),
-    }
-
-
 def run(instance: Instance, number: int, steps: int) -> list[float]:
-    values = scene(number)
-    assert instance.set(values) == OK
-    instance.initialize()
+    chance = random.Random(number)
+    V = chance.uniform(-0.5, 0.5)
+    values = {"V": V, "d": chance.uniform(13e-6, 17e-6), "F_C": chance.uniform(10, 100)}
+    values |= {"contact.stiffnessScale": 10 ** chance.uniform(-6, 0)}
+    values |= {"vibration.V_1": chance.choice([0.0, 0.3]), "vibration.a_d": chance.choice([0.0, 1e-6])}
+    instance.start(values=values)
     for step in range(steps):
         if step % 5 == 4:
             instance.step(-1.0, 1e-5)  # refused, with a message
-        assert instance.set({"V": values["V"] + 0.01 * step}) == OK
+        assert instance.set({"V": V + 0.01 * step}) == OK
         assert instance.step(step * 1.7e-5, 1.7e-5) == OK, instance.messages
     return instance.get(*OUTPUTS)
 

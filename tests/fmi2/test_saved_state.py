@@ -49,10 +49,7 @@ def test_replay_gives_the_same_bits(new_instance: Callable[..., Instance], metho
     assert instance.restore(state) == OK and instance.drop(state) == OK
     assert run(instance, 5, 15) == first
     for place in ("instantiated", "initialization", "step complete", "terminated"):
-        other = new_instance()
-        other.bring_to(place)
-        status, saved = other.deserialize(data)
-        assert (status, other.restore(saved), other.drop(saved)) == (OK, OK, OK)
+        other = new_instance().start(state=place).become(data)
         assert other.fingerprint() == data
         assert run(other, 5, 15) == first
 
@@ -116,8 +113,7 @@ def test_a_state_with_inputs_that_do_not_go_together_can_be_saved(
             instance.get(*OUTPUTS)
         assert instance.set({"d": 16e-6, "vibration.a_d": 1.0}) == OK
     assert one.fingerprint() == other.fingerprint()
-    status, saved = one.deserialize(one.fingerprint())
-    assert (status, one.restore(saved), one.drop(saved)) == (OK, OK, OK)
+    one.become(one.fingerprint())
     assert one.call(*follow_up) == ERROR
     assert one.output_rate("F_t")[0] == one.directional(["F_t"], {"d": 1.0})[0] == ERROR
     assert "vibration.a_d" in one.last_message.text or state == "initialization"

@@ -9,14 +9,8 @@ from fmi_library import ERROR, OK, Instance, Library
 
 from workshop import description
 
-VIBRATING = {
-    "V": 0.5,
-    "vibration.V_1": 1.44,
-    "vibration.a_d": 1.1e-6,
-    "contact.stiffnessScale": 4.4e-7,
-    "friction.sigma_2": 3.0,
-    "friction.V_S": 0.5,
-}
+VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6}
+VIBRATING |= {"contact.stiffnessScale": 4.4e-7, "friction.sigma_2": 3.0, "friction.V_S": 0.5}
 ACROSS = {"V_y": 0.2, "vibration.V_2": 0.7, "vibration.phase_2": 1.0}
 INPUTS = ("V", "d", "E", "load", "V_y")
 BOTH = ("F_t_settled", "F_y_settled")
@@ -34,10 +28,10 @@ def test_asking_leaves_no_trace(
     new_instance: Callable[..., Instance], law: int, initial: int, across: dict[str, float]
 ) -> None:
     asked, other = new_instance(), new_instance()
+    choices = {"friction.model": law, "friction.limit": 2, "initialState": initial}
+    values = VIBRATING | across | {"friction.staticRatio": 1.2, "solver.tolerance": 1e-3}
     for each in (asked, other):
-        assert each.choose({"friction.model": law, "friction.limit": 2, "initialState": initial}) == OK
-        assert each.set(VIBRATING | across | {"friction.staticRatio": 1.2, "solver.tolerance": 1e-3}) == OK
-        assert each.call("fmi2EnterInitializationMode") == OK
+        each.start(choices, values, "initialization")
     first = ask(asked)
     assert asked.fingerprint() == other.fingerprint()
     for each in (asked, other):
@@ -63,15 +57,12 @@ def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance])
     changes = {"V": 0.3, "d": 15e-6, "E": 50e9, "F_C": 40.0, "contact.R_q": 5e-6, "solver.tolerance": 1e-3}
     changes |= {"contact.stiffnessScale": 2e-6, "friction.sigma_2": 5.0, "vibration.f": 1e4}
     changes |= {"vibration.V_1": 1.2, "vibration.a_d": 5e-7, "vibration.phase_d": 1.0, **ACROSS}
-    asked, so_far = new_instance(), dict(VIBRATING)
-    assert asked.set(VIBRATING) == OK and asked.call("fmi2EnterInitializationMode") == OK
+    asked, so_far = new_instance().start({}, VIBRATING, "initialization"), dict(VIBRATING)
     last, chosen = asked.get(*BOTH), {}
     for name, value in [*changes.items(), ("friction.model", 4), ("friction.staticRatio", 1.5)]:
         is_choice = isinstance(value, int)
         (chosen if is_choice else so_far)[name] = value
-        fresh = new_instance()
-        assert fresh.choose(chosen) == OK and fresh.set(so_far) == OK
-        assert fresh.call("fmi2EnterInitializationMode") == OK
+        fresh = new_instance().start(chosen, so_far, "initialization")
         assert (asked.choose if is_choice else asked.set)({name: value}) == OK
         now = asked.get(*BOTH)
         assert now == fresh.get(*BOTH) == asked.get(*BOTH)
@@ -81,8 +72,7 @@ def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance])
 
 def test_calls_that_ask_for_it_beside_others(instance: Instance) -> None:
     """More than once, and in a direction, which is the sum of its parts."""
-    assert instance.set(VIBRATING | ACROSS) == OK
-    instance.initialize()
+    instance.start(values=VIBRATING | ACROSS)
     V, first, F_t, second = instance.get("V", "F_t_settled", "F_t", "F_t_settled")
     assert (V, F_t) == (0.5, instance.get("F_t")[0]) and first == second == instance.get("F_t_settled")[0]
     _, _, *slopes = ask(instance)

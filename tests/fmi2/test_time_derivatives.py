@@ -36,14 +36,11 @@ def test_slope_of_the_force_under_vibration(
     A second holds no whole number of periods, so a slope taken at another time is another one.
     """
     for output, across in (("F_t", {}), ("F_t", ACROSS), ("F_y", ACROSS)):
-        instance = new_instance()
         rates = RATES | ({"V_y": -3.0} if across else {})
-        assert instance.choose({"friction.model": law}) == OK
         vibration = {"vibration.f": 19999.7, "vibration.V_1": 0.1, "vibration.a_d": 1.1e-6}
         dampers = {"friction.sigma_1": damping, "friction.sigma_2": 1.5 * damping}
         soft = {"contact.stiffnessScale": 1e-6, "vibration.phase_d": 0.7}
-        assert instance.set({**soft, **vibration, **dampers, **across}) == OK
-        instance.initialize()
+        instance = new_instance().start({"friction.model": law}, soft | vibration | dampers | across)
         t, expected, slopes = 0.0, [], []
         for h in (1.3e-5, 1.1e-5, 1.9e-5):
             assert instance.step(t, h) == OK
@@ -59,13 +56,9 @@ def test_slope_of_the_force_under_vibration(
         assert slopes == pytest.approx(expected, rel=1e-4, abs=1.6e-6 * steepest)
 
 
-def test_the_slope_after_a_step_continues_its_rates_until_one_is_set(
-    new_instance: Callable[..., Instance],
-) -> None:
+def test_the_slope_after_a_step_continues_its_rates_until_one_is_set(instance: Instance) -> None:
     """It relaxes within 1 / (sigma V / F_C), about 2 ms, so that a step of 1e-7 s is short."""
-    instance = new_instance()
-    assert instance.set({"contact.stiffnessScale": 1e-6}) == OK
-    instance.initialize()
+    instance.start(values={"contact.stiffnessScale": 1e-6})
     assert instance.set_input_rates(RATES) == OK
     assert instance.step(0.0, 1e-3) == OK
     moving, held = (slope_ahead(instance, 1e-3, 1e-7, rates) for rates in (RATES, {}))
@@ -77,8 +70,7 @@ def test_the_slope_after_a_step_continues_its_rates_until_one_is_set(
 
 def test_slope_at_a_reversal_is_the_mean_of_both_sides(instance: Instance) -> None:
     """V = 0 that moves at 7 m/s^2: the dampers alone, since sigma V is 0 on either side."""
-    assert instance.choose({"contact.model": 2}) == OK
-    assert instance.set({"delta_0": 1e-6, "V": 0.0, "friction.sigma_1": 20.0, "friction.sigma_2": 30.0}) == OK
-    instance.initialize()
+    values = {"delta_0": 1e-6, "V": 0.0, "friction.sigma_1": 20.0, "friction.sigma_2": 30.0}
+    instance.start({"contact.model": 2}, values)
     assert instance.set_input_rates({"V": 7.0}) == OK
     assert instance.output_rate("F_t") == (OK, pytest.approx((20.0 + 30.0) * 7.0, rel=1e-14))

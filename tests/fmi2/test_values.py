@@ -55,8 +55,7 @@ def test_outputs_in_initialization_mode_follow_the_start_values(instance: Instan
 
 def test_a_tunable_parameter_takes_effect_at_once(instance: Instance) -> None:
     """A new stiffness keeps the deflection, a new limit counts from the next step on."""
-    assert instance.set({"contact.stiffnessScale": 1e-6}) == OK
-    instance.initialize()
+    instance.start(values={"contact.stiffnessScale": 1e-6})
     assert instance.step(0.0, 1e-3) == OK
     delta, force, sigma = instance.get("delta", "F_t", "sigma")
     assert instance.set({"contact.stiffnessScale": 3e-6}) == OK

@@ -8,14 +8,6 @@
 #include "host.h"
 #include "input.h"
 
-enum { INSTANCES = 2, SLOTS = 3, CALLS_MOST = 40 };
-
-typedef struct {
-    Fmi2Instance instance[INSTANCES];
-    fmi2FMUstate slot[SLOTS];
-    double time; // s, of the last step done
-} Bench;
-
 static fmi2Status step(Bytes* input, Bench* bench, fmi2Component c) {
     const unsigned how = next_byte(input) % 8;
     const double h = next_real(input);
@@ -48,25 +40,6 @@ static fmi2ValueReference next_input(Bytes* input) {
                                     offsetof(FcVariables, E), offsetof(FcVariables, F_t),
                                     offsetof(FcVariables, load)};
     return reference_of(inputs[next_byte(input) % 5]);
-}
-
-static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
-    char bytes[STATE_SIZE_MOST];
-    size_t size = 0;
-    const unsigned slot = next_byte(input) % SLOTS;
-    if (!bench->slot[slot] || fmi2SerializedFMUstateSize(c, bench->slot[slot], &size) != fmi2OK) {
-        return fmi2OK;
-    }
-    HOLD(fmi2SerializeFMUstate(c, bench->slot[slot], bytes, size) == fmi2OK, "a state can be written");
-    const unsigned damage = next_byte(input);
-    const unsigned place = next_byte(input) * 2;
-    if (damage && place < size) {
-        bytes[place] = (char)(bytes[place] ^ (int)damage);
-    }
-    fmi2FMUstate* into = &bench->slot[next_byte(input) % SLOTS];
-    const fmi2Status status = fmi2DeSerializeFMUstate(c, bytes, size, into);
-    HOLD((status == fmi2OK) == !(damage && place < size), "damaged bytes are refused, others are not");
-    return status;
 }
 
 static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
@@ -105,14 +78,14 @@ static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
         return choose(input, c);
     case 10:
     case 11:
-        return fmi2GetFMUstate(c, &bench->slot[next_byte(input) % SLOTS]);
+        return fmi2GetFMUstate(c, next_slot(input, bench));
     case 12:
     case 13:
-        return fmi2SetFMUstate(c, bench->slot[next_byte(input) % SLOTS]);
+        return fmi2SetFMUstate(c, *next_slot(input, bench));
     case 14:
-        return fmi2FreeFMUstate(c, &bench->slot[next_byte(input) % SLOTS]);
+        return fmi2FreeFMUstate(c, next_slot(input, bench));
     case 15:
-        return carry_state(input, bench, c);
+        return carry_state(input, input, bench, c);
     case 16:
         return directional(input, c);
     case 17:
@@ -147,25 +120,6 @@ static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
     }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
-
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    Bytes input = {data, data + size};
-    Bench bench = {.time = 0.0};
-    for (int i = 0; i < INSTANCES; i++) {
-        instantiate_for(&bench.instance[i], fmi2CoSimulation);
-    }
-    for (int calls = 0; input.at < input.end && calls < CALLS_MOST; calls++) {
-        Fmi2Instance* instance = &bench.instance[*input.at < 128 ? 0 : 1];
-        const StateBytes before = state_of(instance->component);
-        new_errors(instance);
-        check_after(instance, &before, call(&input, &bench, instance));
-    }
-    for (int i = 0; i < SLOTS; i++) {
-        HOLD(fmi2FreeFMUstate(bench.instance[0].component, &bench.slot[i]) == fmi2OK, "a slot can be freed");
-    }
-    for (int i = 0; i < INSTANCES; i++) {
-        fmi2_instance_free(&bench.instance[i]);
-    }
-    return 0;
+    return fuzz((Bytes){data, data + size}, fmi2CoSimulation, 40, call);
 }

@@ -137,27 +137,21 @@ static inline void check_outputs(fmi2Component c) {
     read_reals(c, fc_variable_is_settled_force);
 }
 
-static inline fmi2Status rates(fmi2Component c) {
+// Numbers, and the same ones if they are asked for again.
+static inline fmi2Status get_twice(fmi2Component c, fmi2GetDerivativesTYPE* get, size_t count) {
     double first[STATES], again[STATES];
-    const fmi2Status status = CALL(fmi2GetDerivatives(c, first, STATES));
+    const fmi2Status status = CALL(get(c, first, count));
     if (status == fmi2OK) {
-        check_finite(first, STATES, "a rate is a number");
-        HOLD(CALL(fmi2GetDerivatives(c, again, STATES)) == fmi2OK && memcmp(first, again, sizeof first) == 0,
-             "rates asked for again are the same");
+        check_finite(first, count, "a rate or an indicator is a number");
+        HOLD(CALL(get(c, again, count)) == fmi2OK && memcmp(first, again, count * sizeof *first) == 0,
+             "rates and indicators asked for again are the same");
     }
     return status;
 }
 
+static inline fmi2Status rates(fmi2Component c) { return get_twice(c, fmi2GetDerivatives, STATES); }
 static inline fmi2Status indicators(fmi2Component c) {
-    double first[INDICATORS], again[INDICATORS];
-    const fmi2Status status = CALL(fmi2GetEventIndicators(c, first, INDICATORS));
-    if (status == fmi2OK) {
-        check_finite(first, INDICATORS, "an indicator is a number");
-        HOLD(CALL(fmi2GetEventIndicators(c, again, INDICATORS)) == fmi2OK &&
-                 memcmp(first, again, sizeof first) == 0,
-             "indicators asked for again are the same");
-    }
-    return status;
+    return get_twice(c, fmi2GetEventIndicators, INDICATORS);
 }
 
 static inline fmi2Status nominals(fmi2Component c) {

@@ -9,14 +9,6 @@
 #include "host.h"
 #include "input.h"
 
-enum { SLOTS = 3, CALLS_MOST = 60 };
-
-typedef struct {
-    Fmi2Instance exchange;
-    Fmi2Instance simulation;
-    fmi2FMUstate slot[SLOTS];
-} Bench;
-
 // As an integrator tries a step: elsewhere and back.
 static fmi2Status try_step(Bytes* input, fmi2Component c) {
     double x[STATES], tried[STATES], here[STATES], back[STATES];
@@ -47,36 +39,24 @@ static fmi2Status put_states(Bytes* input, fmi2Component c) {
     return fmi2SetContinuousStates(c, x, next_byte(input) % 16 ? STATES : next_byte(input) % 8);
 }
 
-static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
-    char bytes[STATE_SIZE_MOST];
-    size_t size = 0;
-    fmi2FMUstate* from = &bench->slot[next_byte(input) % SLOTS];
-    if (!*from || fmi2SerializedFMUstateSize(c, *from, &size) != fmi2OK) {
-        return fmi2OK;
-    }
-    HOLD(fmi2SerializeFMUstate(c, *from, bytes, size) == fmi2OK, "a state can be written");
-    HOLD(fmi2DeSerializeFMUstate(c, bytes, size, from) == fmi2OK, "and read");
-    return fmi2OK;
-}
-
 static fmi2Status on_states(Bytes* input, Bench* bench, fmi2Component c) {
-    fmi2FMUstate* slot = &bench->slot[next_byte(input) % SLOTS];
+    fmi2FMUstate* slot = next_slot(input, bench);
     switch (next_byte(input) % 5) {
     case 0:
         return fmi2GetFMUstate(c, slot);
     case 1:
-        return fmi2GetFMUstate(bench->simulation.component, slot);
+        return fmi2GetFMUstate(bench->instance[1].component, slot);
     case 2:
         return fmi2FreeFMUstate(c, slot);
     case 3:
-        return carry_state(input, bench, c);
+        return carry_state(input, &(Bytes){0}, bench, c);
     default:
         return fmi2SetFMUstate(c, *slot);
     }
 }
 
-static fmi2Status call(Bytes* input, Bench* bench) {
-    fmi2Component c = bench->exchange.component;
+static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
+    fmi2Component c = instance->component;
     fmi2ValueReference vr = 0;
     double real = 0.0;
     switch (next_byte(input) % 24) {
@@ -128,23 +108,6 @@ static fmi2Status call(Bytes* input, Bench* bench) {
     }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
-
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    Bytes input = {data, data + size};
-    Bench bench = {.slot = {NULL}};
-    instantiate_for(&bench.exchange, fmi2ModelExchange);
-    instantiate_for(&bench.simulation, fmi2CoSimulation);
-    fmi2Component c = bench.exchange.component;
-    for (int calls = 0; input.at < input.end && calls < CALLS_MOST; calls++) {
-        const StateBytes before = state_of(c);
-        new_errors(&bench.exchange);
-        check_after(&bench.exchange, &before, call(&input, &bench));
-    }
-    for (int i = 0; i < SLOTS; i++) {
-        HOLD(fmi2FreeFMUstate(c, &bench.slot[i]) == fmi2OK, "a slot can be freed");
-    }
-    fmi2_instance_free(&bench.exchange);
-    fmi2_instance_free(&bench.simulation);
-    return 0;
+    return fuzz((Bytes){data, data + size}, fmi2ModelExchange, 60, call);
 }

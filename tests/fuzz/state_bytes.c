@@ -44,8 +44,6 @@ static void use(fmi2Component c) {
     fmi2Terminate(c);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
-
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (size == 0) {
         return 0;

@@ -2,7 +2,7 @@
 //
 //     watchdog CALLS [SEED] [--ordinary]   until so many calls have been made; --ordinary: numbers of usual contacts,
 //                                          and no call may raise a floating-point exception
-//     watchdog --scene SCENE [--ordinary]  one scene, then the least part of it that fails
+//     watchdog --scene SCENE [--ordinary]  one scene, and its calls
 //
 // A scene is drawn from its number: start values, and calls of co-simulation or model exchange, along a line or in the
 // plane. Its numbers are usual ones or lie between 1e-300 and 1e300. A worker makes the calls. A call that takes more
@@ -57,11 +57,11 @@ static const char* const FAULT[] = {"sound", "takes too long", "ends the process
 
 // What the worker tells the watch.
 typedef struct {
-    long scene, slowest;   // numbers of scenes
+    long scene;            // its number
     volatile double since; // s of the worker's time at which the present call began
     volatile long calls;
     double longest; // s
-    char call[TEXT], longest_call[TEXT];
+    char call[TEXT];
     Fault fault;
     char what[2 * TEXT];
 } Board;
@@ -137,14 +137,6 @@ static Scene scene_of(long number) {
     return scene;
 }
 
-static void show(const Scene* scene) {
-    printf("  %s\n", scene->exchange ? "model exchange" : "co-simulation");
-    for (int i = 0; i < scene->actions; i++) {
-        const Action* action = &scene->action[i];
-        printf("  %s %s %.17g\n", KIND[action->kind], fc_variables[action->variable].name, action->value);
-    }
-}
-
 // ---- the worker ----
 
 static double time_of(clockid_t clock) {
@@ -172,27 +164,17 @@ static void begin(const char* call) {
     board->since = time_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-static void count_call(double took) {
-    board->since = HUGE_VAL;
-    board->calls++;
-    if (took > board->longest) {
-        board->longest = took;
-        board->slowest = board->scene;
-        memcpy(board->longest_call, board->call, TEXT);
-    }
-}
-
 static int ended(int status) {
     const int raised = fetestexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW);
     const double took = time_of(CLOCK_PROCESS_CPUTIME_ID) - board->since;
-    count_call(took);
+    board->since = HUGE_VAL;
+    board->calls++;
+    board->longest = fmax(board->longest, took);
     if (took > LONGEST) {
         tell(TOO_LONG, "");
     }
     if (ordinary && raised) {
-        tell(EXCEPTION, raised & FE_INVALID     ? "invalid"
-                        : raised & FE_DIVBYZERO ? "division by zero"
-                                                : "overflow");
+        tell(EXCEPTION, raised & FE_INVALID ? "invalid" : "division by zero or overflow");
     }
     return status;
 }
@@ -252,14 +234,11 @@ static void act(fmi2Component c, bool exchange, const Action* action, double* t)
     const fmi2ValueReference vr = action->variable;
     const double value = action->value;
     const int item = (int)fmin(fabs(value), 100.0), first = 1;
+    const bool is_real = fc_variables[vr].type == FC_TYPE_REAL;
     switch (action->kind) {
     case START:
     case SET:
-        if (fc_variables[vr].type == FC_TYPE_REAL) {
-            CALL(fmi2SetReal(c, &vr, 1, &value));
-        } else {
-            CALL(fmi2SetInteger(c, &vr, 1, &item));
-        }
+        is_real ? CALL(fmi2SetReal(c, &vr, 1, &value)) : CALL(fmi2SetInteger(c, &vr, 1, &item));
         break;
     case STEP:
         if (exchange) {
@@ -328,7 +307,7 @@ static void watch(pid_t worker) {
         if (clock_getcpuclockid(worker, &clock) == 0 && time_of(clock) - board->since > LONGEST) {
             kill(worker, SIGKILL);
             waitpid(worker, &status, 0);
-            count_call(HUGE_VAL);
+            board->calls++;
             tell(TOO_LONG, "without end");
             return;
         }
@@ -340,44 +319,30 @@ static void watch(pid_t worker) {
 }
 
 // Scenes from board->scene on in a worker of its own, up to a number of calls or a fault.
-static Fault run_from(const Scene* given, long calls) {
+static Fault run_from(long calls) {
     board->fault = SOUND;
     board->since = HUGE_VAL;
     const pid_t worker = fork();
     if (worker == 0) {
         do {
-            const Scene scene = given ? *given : scene_of(board->scene);
+            const Scene scene = scene_of(board->scene);
             run(&scene);
-        } while (!given && board->fault == SOUND && board->calls < calls && ++board->scene);
+        } while (board->fault == SOUND && board->calls < calls && ++board->scene);
         _exit(0);
     }
     watch(worker);
     return board->fault;
 }
 
-// Leaves out each action that the fault does not need.
-static void reduce(Scene* scene, Fault fault) {
-    for (int i = scene->actions - 1; i >= 0; i--) {
-        Scene less = *scene;
-        memmove(&less.action[i], &less.action[i + 1], sizeof(Action) * (size_t)(less.actions - 1 - i));
-        less.actions--;
-        if (run_from(&less, 0) == fault) {
-            *scene = less;
-        }
-    }
-    run_from(scene, 0);
-}
-
 static int run_one(long number) {
+    const Scene scene = scene_of(number);
     board->scene = number;
-    Scene scene = scene_of(number);
-    const Fault fault = run_from(&scene, 0);
-    printf("scene %ld: %s %s\n", number, FAULT[fault], board->what);
-    if (fault != SOUND) {
-        reduce(&scene, fault);
-        printf("reduced: %s\n", board->what);
+    const Fault fault = run_from(0);
+    printf("scene %ld: %s %s\n  %s\n", number, FAULT[fault], board->what,
+           scene.exchange ? "model exchange" : "co-simulation");
+    for (const Action* action = scene.action; action < scene.action + scene.actions; action++) {
+        printf("  %s %s %.17g\n", KIND[action->kind], fc_variables[action->variable].name, action->value);
     }
-    show(&scene);
     return fault != SOUND;
 }
 
@@ -385,13 +350,13 @@ static int run_many(long calls, long first) {
     long faults = 0;
     board->scene = first;
     while (board->calls < calls) {
-        if (run_from(NULL, calls) != SOUND && faults++ < MOST_SHOWN) {
+        if (run_from(calls) != SOUND && faults++ < MOST_SHOWN) {
             printf("scene %ld %s: %s\n", board->scene, FAULT[board->fault], board->what);
         }
         board->scene++;
     }
-    printf("%ld calls in %ld scenes, the longest %.2g s in scene %ld: %s\n%ld faults\n", board->calls,
-           board->scene - first, board->longest, board->slowest, board->longest_call, faults);
+    printf("%ld calls in %ld scenes, the longest %.2g s\n%ld faults\n", board->calls, board->scene - first,
+           board->longest, faults);
     return faults > 0;
 }
 

@@ -22,20 +22,13 @@ def hunt(*options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([program(), *options], capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize(("count", "plane"), [("200", []), ("24", ["--plane"])])
-def test_the_first_sequences_of_the_hunts_on_the_page(count: str, plane: list[str]) -> None:
-    """Of docs/reliability.md: every law, contact, limit, jumps; leaps of moving inputs in the plane."""
-    done = hunt("--seed", "1", "--scenes", count, *plane)
+@pytest.mark.parametrize(("count", "kind"), [("200", []), ("24", ["--plane"]), ("80", ["--near-line"])])
+def test_the_first_sequences_of_the_hunts_on_the_page(count: str, kind: list[str]) -> None:
+    """Of docs/reliability.md: every law, contact, limit, jumps; leaps in the plane; a line is its limit."""
+    done = hunt("--seed", "1", "--scenes", count, *kind)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert " 0 refused" in done.stdout and " 0 misses" in done.stdout
-    assert plane or " 0 beyond the reference" in done.stdout  # some stiff planes are
-
-
-def test_a_line_is_the_limit_of_the_plane() -> None:
-    """V_y = 1e-9 m/s against V_y = 0, within two tolerances; `scripts/check near-line` takes 20 000."""
-    done = hunt("--near-line", "--seed", "1", "--scenes", "80")
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "\n80 sequences of " in done.stdout and " 0 refused" in done.stdout and " 0 misses" in done.stdout
+    assert f"\n{count} sequences of " in done.stdout and " 0 refused" in done.stdout
+    assert kind or " 0 beyond the reference" in done.stdout  # some stiff planes are
 
 
 def test_scenes_that_were_found() -> None:

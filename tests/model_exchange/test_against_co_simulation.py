@@ -14,11 +14,8 @@ PERIOD = 5e-5  # s
 def stiff(fmu: FrictionFmu, start: dict[str, Value], stiffness: float) -> dict[str, Value]:
     """With that stiffness [N/m] at the start, whatever the contact is made of."""
     with fmu.session(start) as session:
-        return {
-            **start,
-            "contact.sigma": stiffness,
-            "contact.stiffnessScale": stiffness / session.get("sigma"),
-        }
+        scale = stiffness / session.get("sigma")
+    return start | {"contact.sigma": stiffness, "contact.stiffnessScale": scale}
 
 
 def jumped(rng: np.random.Generator, now: dict[str, float]) -> dict[str, float]:
@@ -52,10 +49,7 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
     }
     start = stiff(fmu, start, 20e6)
     start["delta_0"], start["delta_y_0"] = rng.uniform(-2, 2, 2) * [1.0, planar] * 55.0 / 20e6
-    with (
-        fmu.session(start) as session,
-        Host(fmu, start, lambda t, own: now, tolerance=1e-8) as host,
-    ):
+    with fmu.session(start) as session, Host(fmu, start, lambda t, own: now, tolerance=1e-8) as host:
         session.step(0.0)
         heats = [session.get("Q_f")]
         for _ in range(3):
@@ -80,20 +74,11 @@ def test_inputs_that_jump_at_an_event(fmu: FrictionFmu) -> None:
 @pytest.mark.parametrize(("load", "rate"), [(50.0, 0.0), (500.0, -25e3)])
 def test_inputs_whose_speed_changes_at_an_event(fmu: FrictionFmu, load: float, rate: float) -> None:
     """A falling load lets a bristle slip against V. Held, it sticks; raised, it moves to its other bound."""
-    start: dict[str, Value] = {
-        "friction.model": "ElasticPlastic",
-        "friction.limit": "Load",
-        "friction.mu": 0.1,
-        "friction.staticRatio": 1.02,
-        "friction.V_S": 1.0,
-        "contact.model": "Constant",
-        "contact.sigma": 1e6,
-        "contact.input": "Load",
-        "V": -0.002,
-        "load": 100.0,
-    }
+    start: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 1e6, "contact.input": "Load"}
+    start |= {"friction.model": "ElasticPlastic", "friction.limit": "Load", "friction.mu": 0.1}
+    start |= {"friction.staticRatio": 1.02, "friction.V_S": 1.0}
+    start |= {"V": -0.002, "load": 100.0, "delta_0": 10.2e-6}
     event, end = 1e-3, 20e-3
-    start["delta_0"] = 10.2e-6
     now = [100.0, -50e3, 0.0]
     with (
         fmu.session(start) as session,
@@ -125,12 +110,8 @@ def test_no_slip_is_stepped_over(fmu: FrictionFmu, planar: bool) -> None:
     for number in range(18):
         rng = np.random.default_rng([5, number])
         amplitude = 55.0 / 50e6 * (1.0 + 10.0 ** rng.uniform(-4.0, -1.5))
-        start: dict[str, Value] = {
-            "friction.model": "ElasticPlastic",
-            "contact.model": "Constant",
-            "contact.sigma": 50e6,
-            "V": 0.0,
-        }
+        start: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 50e6, "V": 0.0}
+        start["friction.model"] = "ElasticPlastic"
         if number % 3 == 1:
             amplitude *= 1.3
             start |= {"friction.staticRatio": 1.3, "friction.V_S": 0.1}

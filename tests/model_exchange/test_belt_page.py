@@ -11,16 +11,7 @@ import pytest
 from fmpy import simulate_fmu
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.exchange import (
-    CALLS,
-    LAWS,
-    Belt,
-    Run,
-    errors,
-    exchange,
-    reference,
-    simulate,
-)
+from workshop.bench.exchange import CALLS, LAWS, Belt, Run, errors, exchange, reference, simulate
 from workshop.exchange import Host
 from workshop.project import ROOT
 

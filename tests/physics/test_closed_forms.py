@@ -9,6 +9,7 @@ import math
 import random
 import re
 from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -23,11 +24,12 @@ from physics.closed_forms import (
     soft_across,
     soft_along,
 )
+from solver.test_tolerance import drawn, turned_back
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop import reference
 from workshop.project import ROOT
-from workshop.reference import CHOICES, LAWS_WITH_A_STATE, Scene, changed, scene, scene_of
+from workshop.reference import CHOICES, LAWS_WITH_A_STATE, changed, scene_of
 
 F, F_C, V_2, SIGMA = 2e4, 55.0, 0.8, 2.5e6
 OMEGA, D = 2 * math.pi * F, F_C / SIGMA
@@ -86,16 +88,8 @@ def along(law: str, kappa: float, zeta: float) -> dict[str, Value]:
 
 # ---- the contact ----
 
-TABLE_1 = {
-    "R_q": 6e-6,
-    "R": 1.7e-6,
-    "eta": 47e9,
-    "A_n": 1e-4,
-    "nu": 0.33,
-    "Y": 410e6,
-    "c": 17.0,
-    "lambda": 3.0,
-}
+_NAMES = ("R_q", "R", "eta", "A_n", "nu", "Y", "c", "lambda")
+TABLE_1 = dict(zip(_NAMES, (6e-6, 1.7e-6, 47e9, 1e-4, 0.33, 410e6, 17.0, 3.0), strict=True))
 CONTACTS = [  # x = lambda omega_c / R_q from 1e-4 to 1e2
     TABLE_1,
     TABLE_1 | {"R_q": 1e-7, "R": 1e-3, "eta": 1e11, "Y": 2e9},
@@ -204,20 +198,6 @@ def test_means_to_six_digits(
     assert found == pytest.approx(means, abs=6e-7)
 
 
-@pytest.mark.parametrize("turns", [0.25 - 1e-13, 0.25])
-@pytest.mark.parametrize(("law", "kappa"), [("Coulomb", 1.0), ("ElasticPlastic", 1e5), ("Dahl", 1e5)])
-def test_a_settled_mean_does_not_depend_on_the_phase(law: str, kappa: float, turns: float) -> None:
-    """The reference's, also where |V| is about the least at the start: at a quarter of a turn."""
-    for moves in ({"V_y": 0.01 * V_2}, {"V": 1e-3 * V_2}):
-        one, other = (
-            reference.settled(
-                scene_of(vibrating(law, kappa, 0.0) | moves | {"vibration.phase_2": 2 * math.pi * part})
-            )
-            for part in (turns, 0.0)
-        )
-        assert one == pytest.approx(other, abs=1e-12 * F_C)
-
-
 # ---- steps ----
 
 
@@ -298,23 +278,6 @@ def test_a_push_of_zero_at_the_start_goes_on_slipping_if_V_rises() -> None:
 # ---- the reference in turned and finer scenes ----
 
 
-def drawn(rng: random.Random, law: str, limit: str) -> Scene:
-    """A scene along the sliding."""
-    V_1, f = 10 ** rng.uniform(-2, 0), 10 ** rng.uniform(3, 4.5)
-    values = {"V": V_1 * rng.uniform(-2, 2), "V_1": V_1, "a_d": rng.choice([0.0, 5e-7]), "f": f}
-    values |= {"h": rng.uniform(0.05, 3) / f, "start": rng.random() / f, "phase_d": rng.uniform(-3, 3)}
-    now = scene(law=law, limit=limit, contact=rng.choice(CHOICES["contact"]), **values)
-    if rng.random() < 0.5:
-        now.V_rate, now.d_rate = rng.uniform(-3, 3) * V_1 / now.h, rng.uniform(-1e-6, 1e-6) / now.h
-    sigma = 10 ** rng.uniform(-2, 5) * 2 * math.pi * f * F_C / V_1
-    now.contact_sigma, now.stiffnessScale = sigma, sigma / {1: 5.7e12, 2: 1.0, 3: 5.3e9}[now.contact]
-    now.sigma_1, now.sigma_2 = rng.choice([0.0, 5.0 / V_1]), rng.choice([0.0, 5.0 / V_1])
-    if law in ("LuGre", "ElasticPlastic"):
-        now.staticRatio, now.V_S = rng.choice([1.0, 1.5]), V_1 * 10 ** rng.uniform(-2, 0.5)
-    now.delta_0 = 0.0 if law == "Coulomb" else F_C / sigma * rng.uniform(-1, 1)
-    return now
-
-
 def assert_same(one: Any, two: Any, part: float) -> None:
     for name in RESULTS[:6]:
         scale = two.S * (two.path if name in ("W_f", "Q_f") else 1.0)
@@ -327,7 +290,7 @@ def test_one_dimension_in_any_direction(law: str, limit: str) -> None:
     """With exact reversals of V, and the deflection in one line with it."""
     rng = random.Random(3)
     for _ in range(10):
-        now = drawn(rng, law, limit)
+        now = drawn(rng, law, limit, planar=False, kappa=(-2, 5))
         truth, angle = reference.step(now), rng.uniform(-3, 3)
         x, y = math.cos(angle), math.sin(angle)
         turned = changed(now)
@@ -335,11 +298,8 @@ def test_one_dimension_in_any_direction(law: str, limit: str) -> None:
             setattr(turned, first, getattr(now, first) * x)
             setattr(turned, second, getattr(now, first) * y)
         found = reference.step(turned)
-        for first, second in (("F_t", "F_y"), ("F_t_mean", "F_y_mean")):
-            a, b = getattr(found, first), getattr(found, second)
-            setattr(found, first, a * x + b * y)
-            setattr(found, second, b * x - a * y)
-        assert_same(found, truth, 1e-10)
+        back = turned_back({name: getattr(found, name) for name in RESULTS}, angle)
+        assert_same(SimpleNamespace(**back), truth, 1e-10)
 
 
 @pytest.mark.parametrize("law", LAWS_WITH_A_STATE)
@@ -347,7 +307,7 @@ def test_one_dimension_in_any_direction(law: str, limit: str) -> None:
 def test_energy_and_a_finer_mesh_over_oblique_ellipses(law: str, limit: str) -> None:
     rng = random.Random(4)
     for _ in range(10):
-        now = drawn(rng, law, limit)
+        now = drawn(rng, law, limit, planar=False, kappa=(-2, 5))
         now.V_y, now.V_2 = now.V_1 * rng.uniform(-1, 1), now.V_1 * rng.random()
         now.phase_2 = rng.uniform(-3, 3)
         usual = reference.step(now)

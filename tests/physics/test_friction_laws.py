@@ -7,49 +7,49 @@ import re
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
+from frictioncontact.fmu import FrictionError, FrictionFmu, Value
 from workshop.project import ROOT
+from workshop.reference import changed, follow, scene_of
 
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 
 SETTLED = {"initialState": "Settled"}
-
-
 VIBRATING = {"V": 0.3, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "contact.stiffnessScale": 4.4e-7}
 
 
-@pytest.mark.parametrize("scene", [{}, VIBRATING | {"friction.limit": "Load"}])
+def outputs(fmu: FrictionFmu, start: dict[str, Value]) -> list[float]:
+    with fmu.session(start) as session:
+        for h in (7e-6, 13e-6, 2e-5):
+            session.step(h)
+        session.set_rates(V=10.0)
+        session.step(6e-5)
+        return session.read(["F_t", "F_t_mean", "W_f", "Q_f", "delta"]).tolist()
+
+
+SCENES = [{"contact.stiffnessScale": 1e-6}, {"V": 0.1}, VIBRATING | {"friction.limit": "Load"}]
+
+
+@pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("method", ["collocation", "cvode", "rk4"])
 def test_lugre_without_static_excess_is_dahl_bit_for_bit(
     fmu: FrictionFmu, scene: dict[str, Value], method: str
 ) -> None:
-    results = []
-    for law in ("Dahl", "LuGre"):
-        with fmu.session({**scene, "friction.model": law, "solver.method": method}) as session:
-            if method == "rk4" and not scene:
-                session.set("contact.stiffnessScale", 1e-6)
-            session.step(7e-6)
-            session.step(13e-6)
-            results.append(session.read(["F_t", "F_t_mean", "W_f", "Q_f", "delta"]).tolist())
-    assert results[0] == results[1]
+    if method == "rk4" and "contact.stiffnessScale" not in scene:
+        pytest.skip("it is not stable there")
+    dahl, lugre = (
+        outputs(fmu, scene | {"friction.model": law, "solver.method": method}) for law in ("Dahl", "LuGre")
+    )
+    assert dahl == lugre
 
 
-@pytest.mark.parametrize("scene", [{}, VIBRATING | {"friction.limit": "Load"}])
+@pytest.mark.parametrize("scene", SCENES)
 def test_elastic_plastic_with_a_static_ratio_of_1_has_no_stribeck_velocity(
     fmu: FrictionFmu, scene: dict[str, Value]
 ) -> None:
     """Bit for bit, at a Stribeck velocity far below V and at one far above."""
-    results = []
-    for V_S in (0.01, 1e-9, 1e3):
-        stribeck = {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.0, "friction.V_S": V_S}
-        with fmu.session({**scene, **stribeck}) as session:
-            for h in (7e-6, 13e-6, 1e-3):
-                session.step(h)
-            session.set_rates(V=10.0)
-            session.step(6e-5)
-            results.append(session.read(["F_t", "F_t_mean", "W_f", "Q_f", "delta"]).tolist())
+    law = {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.0}
+    results = [outputs(fmu, scene | law | {"friction.V_S": V_S}) for V_S in (0.01, 1e-9, 1e3)]
     assert results[0] == results[1] == results[2]
 
 
@@ -78,59 +78,24 @@ def test_dahl_s_force_stays_within_coulomb_s_at_constant_stiffness(fmu: Friction
                 assert np.abs(session.read(["F_t", "F_t_mean"])).max() <= 55.0 * (1 + 1e-6)
 
 
-def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:
-    """Mean position [m] in each cycle of a mass of 1 kg under a load of 30 N + 10 N cos, at 50 Hz.
-
-    The mass goes first, then the contact with its new velocity: stable up to 2 sqrt(m / sigma) = 2 ms.
-    """
-    h, per_cycle, mass = 2e-4, 100, 1.0
-    velocity = position = 0.0
-    means = []
-    for _ in range(cycles):
-        total = 0.0
-        for k in range(per_cycle):
-            load = 30.0 + 10.0 * math.cos(2 * math.pi * k / per_cycle)
-            velocity += h / mass * (load - session.get("F_t"))
-            session.set("V", velocity)
-            session.step(h)
-            position += h * velocity
-            total += position
-        means.append(total / per_cycle)
-    return means
-
-
 def test_damping_under_vibration_changes_the_force_and_the_heat_and_not_the_mean(fmu: FrictionFmu) -> None:
-    """Against scipy's integration of Eq. 2; docs/physics.md states the numbers."""
-    sigma, V, V_1, T, F_C, sigma_1 = 2.54e6, 0.5, 1.44, 1 / 20e3, 55.0, 500.0
-
-    def velocity(t: np.ndarray | float) -> np.ndarray:
-        return V + V_1 * np.cos(2 * math.pi * t / T)
-
-    def rate(t: np.ndarray | float, delta: np.ndarray) -> np.ndarray:
-        return velocity(t) - sigma * np.abs(velocity(t)) * delta / F_C
-
-    t = T * np.linspace(19.0, 20.0, 501)  # in the periodic state
-    options = {"t_eval": t, "rtol": 1e-9, "atol": 1e-16, "max_step": T / 400}
-    delta = solve_ivp(rate, (0.0, t[-1]), [0.0], **options).y[0]
-    expected, found = {}, {}
+    """Against the reference; docs/physics.md states the numbers."""
+    scene = {"contact.model": "Constant", "contact.sigma": 2.54e6, "V": 0.5, "vibration.V_1": 1.44}
+    steps, F_C, sigma_1, found = 500, 55.0, 500.0, {}
     for damping in (0.0, sigma_1):
-        force = sigma * delta + damping * rate(t, delta)
-        heat = np.trapezoid(force * velocity(t), t)
-        expected[damping] = [force.min() / F_C, force.max() / F_C, np.trapezoid(force, t) / T / F_C, heat]
-        scene = {"contact.model": "Constant", "contact.sigma": sigma, "vibration.V_1": V_1, "V": V}
-        with fmu.session(scene | SETTLED | {"friction.sigma_1": damping}) as session:
-            forces, means, heat = [session.get("F_t")], [], session.get("Q_f")
-            for _ in range(500):
-                session.step(T / 500)
-                forces.append(session.get("F_t"))
-                means.append(session.get("F_t_mean"))
-            found[damping] = [
-                min(forces) / F_C,
-                max(forces) / F_C,
-                np.mean(means) / F_C,
-                session.get("Q_f") - heat,
-            ]
-        assert found[damping] == pytest.approx(expected[damping], rel=2e-3)
+        values = scene | SETTLED | {"friction.sigma_1": damping}
+        truth = follow([changed(scene_of(values), h=5e-5 / steps)] * steps)
+        with fmu.session(values) as session:
+            start, rows = session.get("Q_f"), []
+            for _ in range(steps):
+                session.step(5e-5 / steps)
+                rows.append(session.read(["F_t", "F_t_mean"]))
+            heat = session.get("Q_f") - start
+        assert rows == pytest.approx(np.array([(each.F_t, each.F_t_mean) for each in truth]), abs=1e-3 * F_C)
+        assert heat == pytest.approx(sum(each.Q_f for each in truth), rel=1e-3)
+        forces = np.array(rows)[:, 0] / F_C
+        found[damping] = (forces.min(), forces.max(), np.mean(rows, axis=0)[1] / F_C, heat)
+    assert found[0.0][2] == pytest.approx(found[sigma_1][2], rel=1e-6)
     text = " ".join(PHYSICS.split())
     assert "from {:.1f} to {:.1f} F_C".format(*found[sigma_1][:2]) in text
     assert "from {:.2f} to {:.2f} F_C".format(*found[0.0][:2]) in text
@@ -138,35 +103,34 @@ def test_damping_under_vibration_changes_the_force_and_the_heat_and_not_the_mean
 
 
 def test_a_stuck_mass_creeps_with_dahl_and_not_with_elastic_plastic(fmu: FrictionFmu) -> None:
+    """1 kg under 30 N + 10 N cos at 50 Hz: it goes first, then the contact, stable up to 2 ms."""
     scene = {"V": 0.0, "contact.model": "Constant", "contact.sigma": 1e6, "friction.sigma_1": 300.0}
-    creep = {}
+    creep, h = {}, 2e-4
     for law in ("Dahl", "ElasticPlastic"):
+        velocities = [0.0]
         with fmu.session(scene | {"friction.model": law}) as session:
-            means = positions_of_a_stuck_mass(session, 20)
-            creep[law] = (means[-1] - means[-11]) / 10  # m per cycle
+            for k in range(2000):
+                load = 30.0 + 10.0 * math.cos(2 * math.pi * k / 100)
+                velocities.append(velocities[-1] + h * (load - session.get("F_t")))
+                session.set("V", velocities[-1])
+                session.step(h)
+        position = h * np.cumsum(velocities[1:])
+        creep[law] = (position[-100:].mean() - position[-1100:-1000].mean()) / 10  # m per cycle
     assert abs(creep["ElasticPlastic"]) < 1e-13
     assert creep["Dahl"] > 1e-8
-
-
-@pytest.mark.parametrize(
-    ("scene", "message"),
-    [
-        ({"contact.input": "Load", "load": 1e9}, "load = 1e+09 N presses the surfaces together"),
-        (
-            {"contact.input": "Load", "vibration.a_d": 1.1},
-            "vibration.a_d = 1.1 m presses the surfaces together under load = 312.44 N: ",
-        ),
-    ],
-)
-def test_what_has_no_meaning_is_refused(fmu: FrictionFmu, scene: dict[str, Value], message: str) -> None:
-    with pytest.raises(FrictionError, match=message.replace("+", r"\+")), fmu.session(scene):
-        pass
 
 
 def test_the_bound_of_an_amplitude_under_a_load_is_said(fmu: FrictionFmu) -> None:
     """The one in the message is a bound: a little less is accepted, a little more is not."""
     pressed = {"contact.input": "Load", "load": 1e4}
-    with pytest.raises(FrictionError) as refused, fmu.session(pressed | {"vibration.a_d": 1e-3}):
+    message = r"load = 1e\+09 N presses the surfaces together"
+    with pytest.raises(FrictionError, match=message), fmu.session(pressed | {"load": 1e9}):
+        pass
+    message = r"vibration\.a_d = 0\.001 m presses the surfaces together under load = 10000 N: "
+    with (
+        pytest.raises(FrictionError, match=message) as refused,
+        fmu.session(pressed | {"vibration.a_d": 1e-3}),
+    ):
         pass
     bound = float(re.search(r"up to (\S+) m,", str(refused.value))[1])
     with fmu.session(pressed | {"vibration.a_d": (1 - 1e-8) * bound}):

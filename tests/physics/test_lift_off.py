@@ -8,7 +8,7 @@ curve s.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -50,12 +50,6 @@ def separation(fmu: FrictionFmu, load: float) -> float:
         return 14e-6 + HEIGHT * math.log(session.get("F_n") / load)
 
 
-def way() -> Iterator[float]:
-    """The loads of the way up: a decade each, then open."""
-    for decade in range(1, 110):
-        yield START * 10.0**-decade
-
-
 NODE, WEIGHT = np.polynomial.legendre.leggauss(40)
 
 
@@ -95,27 +89,21 @@ def test_a_lift_off_and_back(
     """No step is refused, however light the contact is on the way, and none costs more than stiff ones."""
     start = start_values(fmu, law, contact, limit, by)
     d_0 = separation(fmu, 1.0)
-    up = [START, *way()]
+    up = [START * 10.0**-decade for decade in range(110)]  # then open
     loads = [*up, -1.0, -1.0, *reversed(up)] if by == "load" else [*up, *reversed(up)]
     with fmu.session(start) as session:
-        now = loads[0]
-        for after in loads[1:]:
+        for now, after in pairwise(loads):
             cost = session.get("solver.evaluations")
-            if by == "load":
-                values = {"load": (now, after)}
-            else:
-                values = {"d": tuple(d_0 - HEIGHT * math.log(load) for load in (now, after))}
-            for name, (first, last) in values.items():
-                session.set(name, first if linear else last)
-                if linear:
-                    session.set_rates(**{name: (last - first) / H})
+            first, last = (load if by == "load" else d_0 - HEIGHT * math.log(load) for load in (now, after))
+            session.set(by, first if linear else last)
+            if linear:
+                session.set_rates(**{by: (last - first) / H})
             session.step(H)
             assert session.get("solver.evaluations") - cost < 2e5
             ends = (max(now, 0.0), max(after, 0.0)) if linear else (max(after, 0.0),) * 2
             mean = coulomb(law, *ends, exponential=by == "d") if max(ends) > NOTHING else 0.0
             opens = max(ends) > NOTHING >= min(ends)  # within the step, which no closed form here has
             check(session, contact == "Constant" and not opens, limit, mean, max(ends))
-            now = after
         session.step(H)
         assert session.get("F_n") == pytest.approx(START, rel=1e-9)
         expected = dict(start) | {"initialState": "Settled", "solver.tolerance": 1e-8}

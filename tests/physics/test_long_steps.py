@@ -13,14 +13,8 @@ HOURS_TO_DECADES = [1e3, 1e7, 3e9]
 
 # Table 1, soft; the separation at a phase in (0, 2 pi).
 V, V_1, D, A_D, PHASE_D, SCALE = 0.5, 1.44, 14e-6, 1.1e-6, 0.3, 4.4e-7
-START = {
-    "V": V,
-    "vibration.V_1": V_1,
-    "vibration.a_d": A_D,
-    "vibration.phase_d": PHASE_D,
-    "contact.stiffnessScale": SCALE,
-    "solver.tolerance": 1e-11,
-}
+START = {"V": V, "vibration.V_1": V_1, "vibration.a_d": A_D, "vibration.phase_d": PHASE_D}
+START |= {"contact.stiffnessScale": SCALE, "solver.tolerance": 1e-11}
 
 
 def angle(t: float, h: float) -> mpf:
@@ -55,12 +49,8 @@ def test_stiffness_at_the_end_has_the_phase_of_the_end(fmu: FrictionFmu, t: floa
 @pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
 def test_a_run_that_starts_whole_periods_later_gives_the_same_bits(fmu: FrictionFmu, law: str) -> None:
     """Local time keeps even a late step exact. f is a power of two, h of 2^-36 s: nothing is rounded."""
-    start = START | {
-        "vibration.f": 16384.0,
-        "friction.model": law,
-        "friction.staticRatio": 1.2,
-        "delta_0": 1e-8,
-    }
+    start = START | {"vibration.f": 16384.0, "friction.model": law}
+    start |= {"friction.staticRatio": 1.2, "delta_0": 1e-8}
     for h in (2.0**-20, 1234567 * 2.0**-36, 0.0625):
         runs = []
         for periods in (0, 1, 12345, 2**30):

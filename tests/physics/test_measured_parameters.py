@@ -37,10 +37,6 @@ def lines_with(**values: float) -> list[dict[str, float | int]]:
     return found
 
 
-def test_every_line_is_read() -> None:
-    assert len(LINES) == 3
-
-
 def test_the_package_has_the_contacts_of_the_page(fmu: FrictionFmu) -> None:
     """Value for value; and what the page says of the first holds for the output that it names."""
     starts = [

@@ -9,7 +9,7 @@ from physics.closed_forms import coulomb_along
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import stiffness
-from frictioncontact.parameters import IDENTIFIED_ABSOLUTE, SEPARATION, TABLE_2, Surfaces, start_values
+from frictioncontact.parameters import SEPARATION, Surfaces
 from frictioncontact.periodic import periodic_mean
 from workshop.project import ROOT
 from workshop.reference import scene_of, settled
@@ -53,16 +53,3 @@ def test_how_far_kappa_100_is_from_coulomb_is_what_the_page_says(fmu: FrictionFm
         off[zeta] = mean / F_C - coulomb_along(zeta)
     said = f"{off[0.3]:.4f} F_C at ζ = 0.3, by {off[0.9]:.3f} F_C at 0.9 and by {off[0.99]:.3f} F_C at 0.99"
     assert said in PAGE
-
-
-@pytest.mark.parametrize(("number", "mean"), [(1, 55.00), (2, 21.05), (6, 27.95)])
-def test_table_2_identified_by_the_mean_of_the_absolute_force(
-    fmu: FrictionFmu, number: int, mean: float
-) -> None:
-    with fmu.session(start_values(TABLE_2[number - 1], IDENTIFIED_ABSOLUTE)) as session:
-        session.step(1e6 / F)
-        force = np.empty(1000)
-        for k in range(len(force)):
-            session.step(1.0 / F / len(force))
-            force[k] = session.get("F_t")
-    assert np.abs(force).mean() == pytest.approx(mean, abs=0.0055)

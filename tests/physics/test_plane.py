@@ -1,4 +1,4 @@
-"""Velocity and vibration across the sliding: quadrature, symmetries and many periods."""
+"""Velocity and vibration across the sliding: many periods, and nothing across."""
 
 from __future__ import annotations
 
@@ -6,33 +6,18 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from frictioncontact.fmu import FrictionFmu, Value
 
 F, F_C = 20e3, 55.0
 LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
 FINE: dict[str, Value] = {"solver.tolerance": 1e-8, "contact.model": "Constant", "F_C": F_C, "vibration.f": F}
-OBLIQUE: dict[str, Value] = {
-    "V": 0.21,
-    "V_y": -0.34,
-    "vibration.V_1": 0.6,
-    "vibration.V_2": 0.9,
-    "vibration.phase_2": 1.1,
-}
+OBLIQUE: dict[str, Value] = {"V": 0.21, "V_y": -0.34}
+OBLIQUE |= {"vibration.V_1": 0.6, "vibration.V_2": 0.9, "vibration.phase_2": 1.1}
 NAMES = ("F_t_mean", "F_t", "W_f", "Q_f")
-MOVES: dict[str, Value] = {
-    "vibration.V_1": 0.6,
-    "vibration.a_d": 4e-7,
-    "vibration.phase_d": 0.8,
-    "friction.staticRatio": 1.3,
-    "friction.V_S": 0.2,
-    "V": 0.2,
-    "delta_0": 1e-8,
-    "contact.stiffnessScale": 4e-7,
-    "friction.sigma_1": 3.0,
-    "friction.sigma_2": 5.0,
-}
+MOVES: dict[str, Value] = {"V": 0.2, "vibration.V_1": 0.6, "vibration.a_d": 4e-7, "vibration.phase_d": 0.8}
+MOVES |= {"friction.staticRatio": 1.3, "friction.V_S": 0.2, "contact.stiffnessScale": 4e-7}
+MOVES |= {"friction.sigma_1": 3.0, "friction.sigma_2": 5.0}
 
 
 def course(fmu: FrictionFmu, values: dict[str, Value]) -> np.ndarray:
@@ -45,19 +30,6 @@ def course(fmu: FrictionFmu, values: dict[str, Value]) -> np.ndarray:
             rows.append(session.read(NAMES))
             session.set("V", -0.1)
         return np.array(rows)
-
-
-def test_coulomb_around_an_oblique_ellipse(fmu: FrictionFmu) -> None:
-    def unit(angle: float) -> complex:
-        along = OBLIQUE["V"] + OBLIQUE["vibration.V_1"] * math.cos(angle)
-        V = complex(along, OBLIQUE["V_y"] + OBLIQUE["vibration.V_2"] * math.cos(angle + 1.1))
-        return V / abs(V)
-
-    parts = (lambda angle: unit(angle).real, lambda angle: unit(angle).imag)
-    truth = [quad(part, 0, 2 * math.pi, epsabs=1e-12)[0] / (2 * math.pi) for part in parts]
-    with fmu.session(FINE | OBLIQUE | {"friction.model": "Coulomb"}) as session:
-        settled = session.read(("F_t_settled", "F_y_settled"))
-    assert settled / F_C == pytest.approx(truth, abs=1e-8)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -76,5 +48,5 @@ def test_a_million_periods_are_settled(fmu: FrictionFmu, law: str) -> None:
 @pytest.mark.parametrize("law", LAWS)
 def test_nothing_across_is_one_dimension(fmu: FrictionFmu, law: str) -> None:
     """To the bit; the hunt grades hardly anything across."""
-    values = MOVES | {"friction.model": law, "delta_0": 0.0}
+    values = MOVES | {"friction.model": law}
     assert (course(fmu, values) == course(fmu, values | {"vibration.phase_2": 1.0})).all()

@@ -21,14 +21,8 @@ X = V_1 / (2.0 * pi * F)
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-9])
 @pytest.mark.parametrize(("sigma", "F_C"), [(1e6, 55.0), (1e4, 1e4)])
 def test_work_and_heat_of_every_period(fmu: FrictionFmu, sigma: float, F_C: float, tolerance: float) -> None:
-    start = {
-        "V": 0.0,
-        "vibration.V_1": V_1,
-        "contact.model": "Constant",
-        "contact.sigma": sigma,
-        "F_C": F_C,
-        "solver.tolerance": tolerance,
-    }
+    start = {"V": 0.0, "vibration.V_1": V_1, "F_C": F_C, "solver.tolerance": tolerance}
+    start |= {"contact.model": "Constant", "contact.sigma": sigma}
     expected = 4.0 / 3.0 * sigma**2 * X**3 / F_C
     swing = 0.5 * sigma * X**2  # J, stored and given back; the sum of the work is rounded like it
     rel = 0.01  # the tolerance is F_C's, and would allow all of it

@@ -16,22 +16,14 @@ from frictioncontact.fmu import FrictionFmu, Value
 F_C = 55.0
 LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
 BY_LOAD = {"friction.limit": "Load", "contact.input": "Load", "load": 200.0}
-VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "vibration.phase_d": 3.9}
-SOFT = {"contact.stiffnessScale": 4.4e-7}
 
 
 @pytest.mark.parametrize("V", [1e-300, -3e-3, 1e15])
 @pytest.mark.parametrize("law", LAWS)
 def test_without_vibration_it_is_steady_sliding(fmu: FrictionFmu, law: str, V: float) -> None:
     has_curve, excess, V_S = law in ("LuGre", "ElasticPlastic"), 0.4, 0.01
-    values = {
-        "friction.model": law,
-        "friction.staticRatio": 1.0 + excess,
-        "friction.V_S": V_S,
-        "friction.sigma_1": 30.0,
-        "friction.sigma_2": 2.0,
-        "V": V,
-    }
+    values = {"friction.model": law, "friction.staticRatio": 1.0 + excess, "friction.V_S": V_S, "V": V}
+    values |= {"friction.sigma_1": 30.0, "friction.sigma_2": 2.0}
     curve = excess * math.exp(-((V / V_S) ** 2)) if has_curve else 0.0
     with fmu.session(values) as session:
         steady = math.copysign(F_C * (1 + curve), V) + 2.0 * V
@@ -75,19 +67,10 @@ def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) ->
 
 def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
     """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
-    values: dict[str, Value] = {
-        "friction.model": "ElasticPlastic",
-        "friction.staticRatio": 1.065,
-        "friction.V_S": 0.43,
-        "contact.model": "Constant",
-        "contact.sigma": 321.0,
-        "vibration.f": 1.0,
-        "vibration.V_1": 0.327,
-        "vibration.V_2": 0.114,
-        "vibration.phase_2": 1.9,
-        "V": -0.0007,
-        "V_y": -0.00105,
-    }
+    values: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 321.0}
+    values |= {"V": -0.0007, "V_y": -0.00105}
+    values |= {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.065, "friction.V_S": 0.43}
+    values |= {"vibration.f": 1.0, "vibration.V_1": 0.327, "vibration.V_2": 0.114, "vibration.phase_2": 1.9}
     with fmu.session(values) as session:
         session.step(3000.0)
         session.step(2.0)
@@ -97,29 +80,18 @@ def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) ->
 
 
 def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, periods: int) -> np.ndarray:
-    """V [m/s] of a mass that a force pulls over Dahl's bristle, vibration and all, after each period: RK4."""
-    h, V, delta, after = 1 / f / 100, 0.0, 0.0, []
+    """V [m/s] of a mass that a force pulls over Dahl's bristle, vibration and all, after each period."""
 
-    def rate(t: float, V: float, delta: float) -> tuple[float, float]:
-        total = V + V_1 * math.cos(2 * math.pi * f * t)
-        return (pull - sigma * delta) / mass, total - sigma * abs(total) * delta / F_C
+    def rate(t: float, at: tuple[float, float]) -> tuple[float, float]:
+        total = at[0] + V_1 * math.cos(2 * math.pi * f * t)
+        return (pull - sigma * at[1]) / mass, total - sigma * abs(total) * at[1] / F_C
 
-    for k in range(100 * periods):
-        t = k * h
-        a_1, b_1 = rate(t, V, delta)
-        a_2, b_2 = rate(t + h / 2, V + h / 2 * a_1, delta + h / 2 * b_1)
-        a_3, b_3 = rate(t + h / 2, V + h / 2 * a_2, delta + h / 2 * b_2)
-        a_4, b_4 = rate(t + h, V + h * a_3, delta + h * b_3)
-        V += h / 6 * (a_1 + 2 * a_2 + 2 * a_3 + a_4)
-        delta += h / 6 * (b_1 + 2 * b_2 + 2 * b_3 + b_4)
-        if k % 100 == 99:
-            after.append(V)
-    return np.array(after)
+    times = np.arange(1, periods + 1) / f
+    return solve_ivp(rate, (0.0, times[-1]), [0.0, 0.0], t_eval=times, max_step=0.02 / f, rtol=1e-6).y[0]
 
 
 @pytest.mark.parametrize(
-    ("mass", "sigma", "periods", "least", "most"),
-    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 700, 7.0, 9.0)],
+    ("mass", "sigma", "periods", "least", "most"), [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 700, 7.0, 9.0)]
 )
 def test_a_mass_follows_it_but_for_ripple_and_transient(
     fmu: FrictionFmu, mass: float, sigma: float, periods: int, least: float, most: float
@@ -138,8 +110,3 @@ def test_a_mass_follows_it_but_for_ripple_and_transient(
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
     assert least * ripple < error < most * ripple
-
-
-def test_a_load_that_does_not_count_has_a_derivative_of_0(fmu: FrictionFmu) -> None:
-    with fmu.session(SOFT | VIBRATING | {"load": 0.0}) as session:
-        assert session.slope("F_t_settled", "load") == 0.0

@@ -18,15 +18,12 @@ from workshop.project import ROOT
 
 TABLE = Path(__file__).with_suffix(".csv")
 PERIOD = 1.0 / 20e3
-SLIDER: Mapping[str, Value] = {"V": 0.005, "vibration.V_1": 1.44}
-NORMAL: Mapping[str, Value] = {"vibration.a_d": 1.1e-6, "vibration.phase_d": 0.7}
-BELLS: Mapping[str, Value] = {
-    **SLIDER,
-    **NORMAL,
-    "friction.model": "LuGre",
-    "friction.staticRatio": 1.3,
-    "friction.V_S": 0.0144,
-}
+SLIDER: dict[str, Value] = {"V": 0.005, "vibration.V_1": 1.44}
+MOVING: dict[str, Value] = SLIDER | {"vibration.a_d": 1.1e-6, "vibration.phase_d": 0.7}
+ELASTIC_PLASTIC: dict[str, Value] = {"friction.model": "ElasticPlastic"}
+LUGRE: dict[str, Value] = {"friction.model": "LuGre", "friction.staticRatio": 1.3}
+PRESSED: dict[str, Value] = {"friction.limit": "Load", "contact.input": "Load"}
+CONSTANT: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 5e5}
 
 
 @dataclass(frozen=True)
@@ -37,50 +34,30 @@ class Scene:
     rates: Mapping[str, float] = field(default_factory=dict)  # of the inputs, per second
 
 
+def scaled(scale: float) -> dict[str, Value]:
+    return {"contact.stiffnessScale": scale}
+
+
 SCENES = {
-    "stiff": Scene({**SLIDER, **NORMAL}, PERIOD),
-    "settled, small steps": Scene(
-        {"V": 0.5, "vibration.V_1": 0.3, **NORMAL, "contact.stiffnessScale": 1e-4}, PERIOD / 50, 200
-    ),
-    "a dip with V > V_1": Scene(
-        {"V": 1.4401, "vibration.V_1": 1.44, "contact.stiffnessScale": 1e-2}, 1.3 * PERIOD, 10
-    ),
-    "a_d near d": Scene({**SLIDER, "vibration.a_d": 13.9e-6, "contact.stiffnessScale": 1e-6}, PERIOD),
-    "tolerance 1e-3": Scene({**SLIDER, **NORMAL, "solver.tolerance": 1e-3}, 7.7 * PERIOD),
-    "inputs that move": Scene(
-        {**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-5}, 5.5 * PERIOD, 3, {"V": -40.0, "d": 2e-3}
-    ),
+    "stiff": Scene(MOVING, PERIOD),
+    "settled, small steps": Scene(MOVING | {"V": 0.5, "vibration.V_1": 0.3} | scaled(1e-4), PERIOD / 50, 200),
+    "a dip with V > V_1": Scene(SLIDER | {"V": 1.4401} | scaled(1e-2), 1.3 * PERIOD, 10),
+    "a_d near d": Scene(SLIDER | {"vibration.a_d": 13.9e-6} | scaled(1e-6), PERIOD),
+    "tolerance 1e-3": Scene(MOVING | {"solver.tolerance": 1e-3}, 7.7 * PERIOD),
+    "inputs that move": Scene(MOVING | scaled(1e-5), 5.5 * PERIOD, 3, {"V": -40.0, "d": 2e-3}),
     "moving periods, of which some are not leapt over": Scene(
-        {
-            "V": 0.05,
-            "vibration.V_1": 0.17,
-            "friction.model": "ElasticPlastic",
-            "contact.model": "Constant",
-            "contact.sigma": 5e5,
-        },
-        300 * PERIOD,
-        rates={"V": -3.0},
+        ELASTIC_PLASTIC | CONSTANT | {"V": 0.05, "vibration.V_1": 0.17}, 300 * PERIOD, rates={"V": -3.0}
     ),
     "the limit and the surfaces follow a load": Scene(
-        {
-            **SLIDER,
-            **NORMAL,
-            "friction.model": "LuGre",
-            "friction.staticRatio": 1.4,
-            "friction.limit": "Load",
-            "contact.input": "Load",
-            "contact.stiffnessScale": 1e-4,
-        },
-        2.2 * PERIOD,
-        2,
+        MOVING | LUGRE | PRESSED | {"friction.staticRatio": 1.4} | scaled(1e-4), 2.2 * PERIOD, 2
     ),
     "ElasticPlastic, limit and stiffness move": Scene(
-        {**SLIDER, **NORMAL, "friction.model": "ElasticPlastic", "friction.limit": "Load"}, 1.3 * PERIOD, 10
+        MOVING | ELASTIC_PLASTIC | {"friction.limit": "Load"}, 1.3 * PERIOD, 10
     ),
     "bells of the Stribeck curve, in layers": Scene(
-        {**BELLS, "contact.stiffnessScale": 1e-4}, 0.93 * PERIOD, 10
+        MOVING | LUGRE | {"friction.V_S": 0.0144} | scaled(1e-4), 0.93 * PERIOD, 10
     ),
-    "cvode": Scene({**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-6, "solver.method": "cvode"}, PERIOD),
+    "cvode": Scene(MOVING | scaled(1e-6) | {"solver.method": "cvode"}, PERIOD),
 }
 
 

@@ -6,6 +6,7 @@ docs/numerics.md promises.
 
 from __future__ import annotations
 
+import cmath
 import math
 import random
 from typing import Any
@@ -23,8 +24,9 @@ GRADED = ("F_t", "F_y", "F_t_mean", "F_y_mean", "W_f", "Q_f")
 Results = dict[str, float]
 
 
-def results(fmu: FrictionFmu, now: Scene, tolerance: float) -> Results:
-    with fmu.session(start_values(now) | {"solver.tolerance": tolerance}, now.start) as session:
+def results(fmu: FrictionFmu, now: Scene, tolerance: float, method: str = "collocation") -> Results:
+    solver = {"solver.tolerance": tolerance, "solver.method": method}
+    with fmu.session(start_values(now) | solver, now.start) as session:
         session.set_rates(**{name: getattr(now, f"{name}_rate") for name in INPUTS})
         session.step(now.h)
         names = (*GRADED, "solver.evaluations")
@@ -48,7 +50,9 @@ def error(now: Scene, found: Results, truth: Any) -> float:
 # ---- the sweep ----
 
 
-def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
+def drawn(
+    rng: random.Random, law: str, limit: str, planar: bool, kappa: tuple[float, float] = (-3, 8)
+) -> Scene:
     """kappa of 1e-3 to 1e8, any contact, V and the inputs held or linear, near a reversal and far from it."""
     V_1, f = 10 ** rng.uniform(-2, 0.5), 10 ** rng.uniform(2, 4.7)
     contact = rng.choice(CHOICES["contact"])
@@ -65,9 +69,11 @@ def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
         a_d=rng.choice((0.0, 1e-300, 1e-18, 10 ** rng.uniform(-8, -6))),
         phase_d=rng.uniform(-3, 3),
         F_C=10 ** rng.uniform(0, 2),
+        input=rng.choice(CHOICES["input"]),
     )
     if rng.random() < 0.4:
         now.V_rate, now.d_rate = rng.uniform(-2, 2) * V_1 / now.h, rng.uniform(-5e-7, 5e-7) / now.h
+        now.load_rate, now.E_rate = (rng.uniform(-0.5, 0.5) * x / now.h for x in (now.load, now.E))
     if planar:
         now.V_y = V_1 * rng.choice((-1, 1)) * 10 ** rng.uniform(-12, 0)
         now.V_2, now.phase_2 = rng.choice((0.0, V_1 * rng.random())), rng.uniform(-3, 3)
@@ -78,7 +84,7 @@ def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
         now.sigma_1 = rng.choice((0.0, 0.2 * now.F_C / V_1))
     now.sigma_2 = rng.choice((0.0, 0.2 * now.F_C / V_1))
     limit_0, sigma_0 = rest(now)
-    stiffness = 10 ** rng.uniform(-3, 8) * 2 * math.pi * f * limit_0 / V_1
+    stiffness = 10 ** rng.uniform(*kappa) * 2 * math.pi * f * limit_0 / V_1
     now.contact_sigma, now.stiffnessScale = stiffness, now.stiffnessScale * stiffness / sigma_0
     if law != "Coulomb":
         angle, size = rng.uniform(-3, 3) if planar else 0.0, rng.uniform(-0.9, 0.9) * limit_0 / stiffness
@@ -133,11 +139,10 @@ def turned(now: Scene, angle: float, V_y: float) -> Scene:
 
 
 def turned_back(found: Results, angle: float) -> Results:
-    x, y = math.cos(angle), math.sin(angle)
     back = dict(found)
     for along, across in (("F_t", "F_y"), ("F_t_mean", "F_y_mean")):
-        back[along] = found[along] * x + found[across] * y
-        back[across] = found[across] * x - found[along] * y
+        force = complex(found[along], found[across]) * cmath.exp(-1j * angle)
+        back[along], back[across] = force.real, force.imag
     return back
 
 

@@ -12,14 +12,15 @@ static const double PERIOD = 5e-5;
 
 static double uniform(double low, double high) { return low + (high - low) * random_01(); }
 
+static const FcLinearInput HELD = {1.0, 0.0};
+
 typedef struct {
-    double V, V_rate, V_1, d_rate, a_d, phase_d, start;
+    double V, V_rate, V_1, start, rest;
 } Case;
 
 static FcDrive drive_of(Case c) {
-    return fc_drive_make((FcLinearInput){c.V, c.V_rate}, (FcLinearInput){14e-6, c.d_rate},
-                         (FcLinearInput){58e9, 0.0}, (FcLinearInput){1.0, 0.0},
-                         (FcVibration){F, c.V_1, c.a_d, c.phase_d, 0.0, 0.0}, c.start, 0.0);
+    return fc_drive_make((FcLinearInput){c.V, c.V_rate}, HELD, HELD, HELD,
+                         (FcVibration){.f = F, .V_1 = c.V_1}, c.start, c.rest);
 }
 
 // f t modulo 1 in whole numbers: every double t from 2^29 to 2^30 s is a multiple of 2^-23 s, and f is one of 1 Hz.
@@ -39,33 +40,27 @@ static void phase_is_exact_after_many_years(void) {
 }
 
 static void rest_of_the_time_counts(void) {
-    const FcVibration vibration = {.f = F, .V_1 = 1.0};
-    const FcLinearInput held = {1.0, 0.0};
     const double rest = 4e-8; // s, below the rounding of 1e9 s
-    const FcDrive with = fc_drive_make(held, held, held, held, vibration, 1e9, rest);
-    const FcDrive without = fc_drive_make(held, held, held, held, vibration, 1e9, 0.0);
+    const FcDrive with = drive_of((Case){.V_1 = 1.0, .start = 1e9, .rest = rest});
+    const FcDrive without = drive_of((Case){.V_1 = 1.0, .start = 1e9});
     CHECK_WITHIN(with.theta_0 - without.theta_0, TWO_PI * F * rest, 2e-15);
 }
 
 enum { MOST_EVENTS = 64 };
 typedef struct {
-    FcDriveEvent event[MOST_EVENTS];
-    int count;
-    int reversals;
+    double reversal[MOST_EVENTS]; // s, their times
+    int events, reversals;
 } Events;
 
 static Events events_until(const FcDrive* drive, double end) {
-    Events all = {0};
-    double t = 0.0;
-    while (t < end && all.count < MOST_EVENTS) {
+    Events all = {.events = 0};
+    for (double t = 0.0; t < end && all.events < MOST_EVENTS;) {
         const FcDriveEvent next = fc_drive_next_event(drive, t, end);
-        CHECK(next.time > t && next.time <= end);
-        if (!(next.time < end)) {
-            CHECK(!next.reversal);
-            break;
+        CHECK(next.time > t && next.time <= end && !(next.reversal && next.time == end));
+        all.events += next.time < end;
+        if (next.reversal) {
+            all.reversal[all.reversals++] = next.time;
         }
-        all.event[all.count++] = next;
-        all.reversals += next.reversal;
         t = next.time;
     }
     return all;
@@ -76,10 +71,10 @@ static void grazing_reversals(void) {
     const double gap = 0x1p-40;
     const FcDrive drive = drive_of((Case){.V = 1.0 - gap, .V_1 = 1.0});
     const Events all = events_until(&drive, PERIOD);
-    CHECK(all.count == 2 && all.reversals == 2);
+    CHECK(all.events == 2 && all.reversals == 2);
     const double apart = 2.0 * sqrt(2.0 * gap) / (TWO_PI * F);
-    CHECK_NEAR(all.event[1].time - all.event[0].time, apart, 1e-9);
-    CHECK_WITHIN(0.5 * (all.event[1].time + all.event[0].time), 0.5 * PERIOD, 1e-15 * PERIOD);
+    CHECK_NEAR(all.reversal[1] - all.reversal[0], apart, 1e-9);
+    CHECK_WITHIN(0.5 * (all.reversal[1] + all.reversal[0]), 0.5 * PERIOD, 1e-15 * PERIOD);
 }
 
 // Next to the angle at which V = -(1 + gap) + cos touches zero, in long double: -gap - 2 sin^2(x / 2). The angle itself is
@@ -125,36 +120,28 @@ static void check_by_walking(const FcDrive* drive, double end, int walked) {
         const double t = end * i / walked;
         const double now = fc_drive_V(drive, t);
         if ((before < 0.0) != (now < 0.0)) {
-            while (k < all.count && !all.event[k].reversal) {
-                k++;
-            }
-            CHECK(k < all.count);
-            if (k >= all.count) {
+            CHECK(k < all.reversals);
+            if (k >= all.reversals) {
                 return;
             }
-            const double root = all.event[k].time;
+            const double root = all.reversal[k++];
             CHECK(root > t - 2.0 * end / walked && root <= t + 1e-15);
             const double rounding = 4e-16 * drive->vibration.V_1 + 4e-16 * fabs(drive->V.rate * end) + 1e-15;
             const double slope = fabs(fc_drive_V_rate(drive, root));
             CHECK_WITHIN(fc_drive_V(drive, root), 0.0, rounding + 4e-16 * end * slope);
-            k++;
         }
         before = now;
     }
-    while (k < all.count && !all.event[k].reversal) {
-        k++;
-    }
-    CHECK(k == all.count);
+    CHECK(k == all.reversals);
 }
 
 static void reversals_of_linear_inputs(void) {
     for (int i = 0; i < 300; i++) {
         const double steepness = uniform(-1.5, 1.5); // V' over the vibration's largest slope
-        const Case c = {.V = uniform(-2.0, 2.0),
-                        .V_rate = i % 3 ? steepness * TWO_PI * F : 0.01 * steepness * TWO_PI * F,
-                        .V_1 = 1.0,
-                        .start = uniform(0.0, PERIOD)};
-        const FcDrive drive = drive_of(c);
+        const FcDrive drive = drive_of((Case){.V = uniform(-2.0, 2.0),
+                                              .V_rate = (i % 3 ? 1.0 : 0.01) * steepness * TWO_PI * F,
+                                              .V_1 = 1.0,
+                                              .start = uniform(0.0, PERIOD)});
         check_by_walking(&drive, 2.6 * PERIOD, 20000);
     }
 }
@@ -162,9 +149,8 @@ static void reversals_of_linear_inputs(void) {
 // V turns in a step over which a slow vibration goes on by less than its phase is known to.
 static void reversal_of_a_fast_input_over_a_slow_vibration(void) {
     const FcLinearInput V = {0.0118295, -1.177e9};
-    const FcLinearInput held = {1.0, 0.0};
     const FcDrive drive =
-        fc_drive_make(V, held, held, held, (FcVibration){.f = 1e-4, .V_1 = 1e-3}, 1000.0, 0.0);
+        fc_drive_make(V, HELD, HELD, HELD, (FcVibration){.f = 1e-4, .V_1 = 1e-3}, 1000.0, 0.0);
     const double end = 1.83e-11;
     const FcDriveEvent event = fc_drive_next_event(&drive, 0.0, end);
     CHECK(event.time < end && event.reversal);
@@ -183,14 +169,10 @@ static void integrals_of_V(void) {
         const double h = duration[i % 7] / omega;
         const double start = 0.3 * h;
         const double V_rate = rate[i / 7 % 4] * omega;
-        const Case c = {.V = 0.2 - 0.8 * h * V_rate,
-                        .V_rate = V_rate,
-                        .V_1 = i < 28 ? 0.0 : 0.7,
-                        .start = 0.21 * (i / 28) / F};
+        const double V_1 = i < 28 ? 0.0 : 0.7;
+        const Case c = {0.2 - 0.8 * h * V_rate, V_rate, V_1, 0.21 * (i / 28) / F, 0.0};
         const FcDrive drive = drive_of(c);
-        long double displacement = 0.0;
-        long double integral = 0.0; // of the displacement
-        long double square = 0.0;
+        long double displacement = 0.0, square = 0.0, integral = 0.0; // of the displacement
         for (int k = 0; k <= POINTS; k++) {
             const long double t = start + (long double)h * k / POINTS;
             const long double V = c.V + c.V_rate * t + c.V_1 * cosl(drive.theta_0 + drive.omega * t);
@@ -211,13 +193,12 @@ static void integrals_of_V(void) {
 // In units of 2^-40 Pa and 2^-40 s every number here is a whole one.
 static void what_is_left_of_E_and_load_has_its_digits(void) {
     const uint64_t start = 1000000;
-    const FcLinearInput held = {1.0, 0.0};
     for (uint64_t k = 0; k < 100; k++) {
         const uint64_t rate = 0x7fffffffu - 2u * k;
         const uint64_t ticks = (start << 40) / rate;
         const double left = (double)((start << 40) - rate * ticks) * 0x1p-40;
         const FcLinearInput falls = {(double)start, -(double)rate};
-        const FcDrive drive = fc_drive_make(held, held, falls, falls, (FcVibration){.f = F}, 0.0, 0.0);
+        const FcDrive drive = fc_drive_make(HELD, HELD, falls, falls, (FcVibration){.f = F}, 0.0, 0.0);
         CHECK_NEAR(fc_drive_E(&drive, (double)ticks * 0x1p-40), left, 1e-15);
         CHECK_NEAR(fc_drive_load(&drive, (double)ticks * 0x1p-40), left, 1e-15);
     }

@@ -32,16 +32,14 @@ static long failing;     // number of the allocation that fails; 0: none
 
 static bool fails(void) { return ++allocations == failing; }
 
-void* __wrap_malloc(size_t size) {
-    void* memory = fails() ? NULL : __real_malloc(size);
+static void* count(void* memory) {
     live += memory != NULL;
     return memory;
 }
 
-void* __wrap_calloc(size_t count, size_t size) {
-    void* memory = fails() ? NULL : __real_calloc(count, size);
-    live += memory != NULL;
-    return memory;
+void* __wrap_malloc(size_t size) { return count(fails() ? NULL : __real_malloc(size)); }
+void* __wrap_calloc(size_t number, size_t size) {
+    return count(fails() ? NULL : __real_calloc(number, size));
 }
 
 void __wrap_free(void* memory) {
