@@ -214,6 +214,9 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
 
 FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
                    FcMap* across, double* evaluations) {
+    if (isnan(start)) { // no number of an earlier interval
+        return (FcMap){.offset = NAN};
+    }
     assert(duration > 0.0 && start >= 0.0);
     FcPlane plane;
     fc_plane_make(&plane, scene);
