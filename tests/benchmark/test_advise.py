@@ -12,8 +12,10 @@ import pytest
 
 from frictioncontact import simulation as simulate
 from frictioncontact.advice import command as advise
+from frictioncontact.advice.answer import advise as question
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.command import main
+from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
 from workshop.bench.cases import Case
@@ -142,20 +144,24 @@ def test_bad_questions_get_one_line(
 ) -> None:
     uneven = tmp_path / "inputs.csv"
     uneven.write_text("time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n")
+    mass = ["--mass", "1", "--step", "1e-3"]
     for words, message in (
-        (["--set", "V"], "V: is not of the form NAME=VALUE"),
         (["solver.tolerance=1e-3"], "solver.tolerance does not describe a scene; these do: V, d, E"),
         (["--accuracy", "0"], "accuracy 0: must lie between"),
         (["--step", "-1"], "step -1 s: must lie between"),
-        (["--inputs", "nowhere.csv"], "nowhere.csv: No such file"),
         (["--inputs", str(uneven)], "inputs: time must grow in even steps, and does not at sample "),
         ([*OPEN, "friction.limit=Load"], "friction.mu F_n = 0 N: must be above 0 N"),
-        ([*OPEN, "--mass", "1", "--step", "1e-3"], "mass: sigma = 0 N/m: must be above 0 N/m"),
+        ([*OPEN, *mass], "mass: sigma = 0 N/m: must be above 0 N/m"),
+        (["--mass", "0", "--step", "1e-4"], "mass 0 kg: must lie between"),
+        (["--mass", "1"], "mass needs step and takes no inputs"),
+        ([*mass, "--inputs", str(uneven)], "mass needs step and takes no inputs"),
+        ([*mass, "friction.model=Coulomb"], "Coulomb never sticks"),
     ):
         with pytest.raises(SystemExit) as ended:
             advised(fmu_path, capsys, *words)
-        assert message in str(ended.value)
-        assert str(ended.value).count("\n") == 0
+        assert message in str(ended.value) and "\n" not in str(ended.value)
+    with pytest.raises(UserError, match=r"^master = 'Gauss': must be one of 'Jacobi', "):
+        question({}, mass=1.0, step=1e-4, master="Gauss", fmu=fmu_path)
 
 
 TIMES, SPEEDS = 2e-5 + 1e-5 * np.arange(11), 0.01 * (np.arange(11) - 5)

@@ -39,26 +39,16 @@ TITLES = {  # of the rows in docs/machine.md
 }
 
 
-def grows(
-    fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0, output: str = "F_t"
-) -> bool:
+def grows(fmu: FrictionFmu, master: str, H: float, sigma_1: float, output: str = "F_t") -> bool:
     """Whether the mass, which starts at 1 um/s from rest of the contact, swings ever more.
 
-    c damps it outside. By more than 1 % in 200 steps: an undamped swing's samples miss its peak by less. The
-    law is ElasticPlastic far below its limit, which sticks truly; the mass is integrated exactly.
+    By more than 1 % in 200 steps: an undamped swing's samples miss its peak by less. ElasticPlastic sticks
+    truly far below its limit; the mass is integrated exactly.
     """
-    x = c * H / M
-    kept = math.exp(-x)
-    by_force = -(-math.expm1(-x) / c if c else H / M)
-    by_rate = -0.5 * H**2 / M
     start = {
-        "friction.model": "ElasticPlastic",
-        "contact.model": "Constant",
-        "contact.sigma": SIGMA,
-        "friction.sigma_1": sigma_1,
-        "F_C": 1e9 * SIGMA * TIME * 1e-6,
-        "V": 1e-6,
-    }
+        "friction.model": "ElasticPlastic", "contact.model": "Constant", "contact.sigma": SIGMA,
+        "friction.sigma_1": sigma_1, "F_C": 1e9 * SIGMA * TIME * 1e-6, "V": 1e-6,
+    }  # fmt: skip
     v = 1e-6
     speeds = [v]
     with fmu.session(start) as session:
@@ -70,7 +60,7 @@ def grows(
             if master == LINEAR:
                 session.set_rates(V=-force / M)
                 rate = session.force_rate()
-            v = kept * v + by_force * force + by_rate * rate
+            v -= H / M * (force + 0.5 * H * rate)
             if master == GAUSS_SEIDEL:
                 session.set("V", v)
             session.step(H)
@@ -91,18 +81,27 @@ def promised(master: str, H: float) -> tuple[float, float]:
     return edges[0], edges[1]
 
 
-@pytest.mark.parametrize("fraction", [0.3, 0.95])
+@pytest.mark.parametrize("fraction", [0.1, 0.3, 0.95, 0.999])
 @pytest.mark.parametrize("master", MASTERS)
 def test_the_fmu_turns_unstable_at_the_edges_of_the_table(
     fmu: FrictionFmu, master: str, fraction: float
 ) -> None:
+    """What is advised lies a tenth above the lower one, or half-way between both."""
     H = fraction * LARGEST_STEP[master] * TIME
     low, high = promised(master, H)
     assert damping_range(M, SIGMA, master, H) == pytest.approx((low, high), rel=1e-9)
-    assert grows(fmu, master, H, 1.03 * high)
-    assert not grows(fmu, master, H, 0.97 * high)
-    assert not grows(fmu, master, H, 1.03 * low)
-    assert low == 0.0 or grows(fmu, master, H, 0.97 * low)
+    assert least_damping(M, SIGMA, master, H) == pytest.approx(min(1.1 * low, math.sqrt(low * high)))
+    if fraction in (0.3, 0.95):
+        check_edges(fmu, master, H, low, high)
+
+
+def check_edges(
+    fmu: FrictionFmu, master: str, H: float, low: float, high: float, output: str = "F_t"
+) -> None:
+    assert grows(fmu, master, H, 1.03 * high, output)
+    assert not grows(fmu, master, H, 0.97 * high, output)
+    assert not grows(fmu, master, H, 1.03 * low, output)
+    assert low == 0.0 or grows(fmu, master, H, 0.97 * low, output)
 
 
 @pytest.mark.parametrize("master", [JACOBI, GAUSS_SEIDEL])
@@ -110,10 +109,7 @@ def test_the_edges_of_the_mean_force(fmu: FrictionFmu, master: str) -> None:
     """They lie H sigma / 2 higher, as docs/machine.md and the advice say."""
     H = 0.5 * LARGEST_STEP[master] * TIME
     low, high = (edge + H * SIGMA / 2 for edge in promised(master, H))
-    assert grows(fmu, master, H, 1.03 * high, output="F_t_mean")
-    assert not grows(fmu, master, H, 0.97 * high, output="F_t_mean")
-    assert not grows(fmu, master, H, 1.03 * low, output="F_t_mean")
-    assert grows(fmu, master, H, 0.97 * low, output="F_t_mean")
+    check_edges(fmu, master, H, low, high, "F_t_mean")
     assert f"F_t_mean, add H sigma / 2 = {H * SIGMA / 2:.6g} N s/m" in advice(M, SIGMA, master, H)[0]
 
 
@@ -126,23 +122,8 @@ def test_the_largest_step_is_that_of_the_table(fmu: FrictionFmu, master: str) ->
     assert not grows(fmu, master, H, math.fsum(damping_range(M, SIGMA, master, H)) / 2)
     H = 1.03 * limit * TIME
     assert damping_range(M, SIGMA, master, H) is None
+    assert "No friction.sigma_1 makes a step" in advice(M, SIGMA, master, H)[0]
     assert all(grows(fmu, master, H, x * M / H) for x in np.linspace(0.0, 5.0, 25))
-
-
-@pytest.mark.parametrize("master", MASTERS)
-def test_the_advised_damping_is_stable_and_hardly_more_than_the_least(fmu: FrictionFmu, master: str) -> None:
-    for fraction in (0.1, 0.999):
-        H = fraction * LARGEST_STEP[master] * TIME
-        advised = least_damping(M, SIGMA, master, H)
-        assert not grows(fmu, master, H, advised)
-        assert advised <= 1.1001 * promised(master, H)[0]
-
-
-def test_damping_outside_sets_the_held_step(fmu: FrictionFmu) -> None:
-    """H < c / sigma."""
-    H = 0.1 * TIME
-    assert not grows(fmu, JACOBI, H, 0.0, c=1.03 * H * SIGMA)
-    assert grows(fmu, JACOBI, H, 0.0, c=0.97 * H * SIGMA)
 
 
 def test_the_advice_can_be_pasted(fmu: FrictionFmu, capsys: pytest.CaptureFixture[str]) -> None:
@@ -164,22 +145,3 @@ def test_the_advice_can_be_pasted(fmu: FrictionFmu, capsys: pytest.CaptureFixtur
     with fmu.session(sticking) as session:
         session.step(0.999 * 1.5 * 55.0 / 1e6 / 0.1)
         assert session.get("F_t") == pytest.approx(0.999 * 1.5 * 55.0 + 111.123 * 0.1, rel=1e-6)
-
-
-def test_a_step_that_nothing_makes_stable_is_said() -> None:
-    assert "No friction.sigma_1 makes a step" in advice(M, SIGMA, JACOBI, 0.6 * TIME)[0]
-
-
-def test_wrong_options_are_one_line() -> None:
-    needs = "mass needs step and takes no inputs"
-    for words, message in (
-        (["0", "--step", "1e-4"], "mass 0 kg: must lie between"),
-        (["1", "--step", "1e300"], "step 1e+300 s: must lie between"),
-        (["1"], needs),
-        (["1", "--step", "1e-4", "--inputs", "drive.csv"], needs),
-        (["1", "--step", "1e-4", "--set", "friction.model=Coulomb"], "Coulomb never sticks"),
-    ):
-        with pytest.raises(SystemExit) as ended:
-            main(advise, ["--mass", *words])
-        assert message in str(ended.value)
-        assert "\n" not in str(ended.value)

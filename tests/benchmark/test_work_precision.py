@@ -55,17 +55,8 @@ def test_the_tables_of_the_page_are_renewed(monkeypatch: pytest.MonkeyPatch, tmp
     )
     monkeypatch.setattr(work_precision, "PAGE", page)
     costs = [{"error": error, "case": "held", "calls": 0.5, "Radau 9": 1e9 * error} for error in (1e-6, 1e-9)]
-    steps = [
-        {
-            "law": "Dahl",
-            "limit": "Load",
-            "inputs": kind,
-            "periods": 10**6,
-            "ratio": ratio,
-            "cpu_ratio": 1640.0,
-        }
-        for kind, ratio in (("held", 2.0), ("moving", 16.0))
-    ]
+    shared = {"law": "Dahl", "limit": "Load", "periods": 10**6, "cpu_ratio": 1640.0}
+    steps = [shared | {"inputs": kind, "ratio": ratio} for kind, ratio in (("held", 2.0), ("moving", 16.0))]
     renew_tables(costs, steps, {"held": "Held"})
     text = page.read_text()
     assert "| Held | 50 % | not reached | 1000 |" in text and "old" not in text

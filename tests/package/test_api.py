@@ -66,22 +66,6 @@ def test_wrong_fits_are_one_line(fmu_path: Path, arguments: dict, message: str) 
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"scene": {"solver.tolerance": 1e-3}}, "solver.tolerance does not describe a scene; these do: V, d"),
-        ({"accuracy": 2.0}, "accuracy 2: must lie between 1e-08 and 1"),
-        ({"inputs": {"time": [0.0, 1.0, 3.0], "V": [0.0] * 3}}, "inputs: time must grow in even steps"),
-        ({"mass": 1.0}, "mass needs step and takes no inputs"),
-        ({"mass": 0.0, "step": 1e-4}, "mass 0 kg: must lie"),
-        ({"mass": 1.0, "step": 1e-4, "master": "Gauss"}, "master = 'Gauss': must be one of 'Jacobi', "),
-    ],
-)
-def test_wrong_questions_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
-    with pytest.raises(fc.UserError, match="^" + re.escape(message)):
-        fc.advise(**{"fmu": fmu_path, **arguments})
-
-
-@pytest.mark.parametrize(
     ("scene", "arguments"),
     [
         ({"V": 0.05, "vibration.V_1": 1.44, "friction.model": "LuGre"}, {"accuracy": 1e-4, "step": 1e-3}),

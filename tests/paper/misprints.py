@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
-from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from frictioncontact.parameters import E_FULL, SEPARATION, Surfaces
-
-
-def closed_form_area(surfaces: Surfaces, d: float, E: float = E_FULL) -> float:
-    """A_r [m2], Eq. 20-22 corrected: what the FMU computes."""
-    x = surfaces.lambda_ * surfaces.critical_interference(E) / surfaces.R_q
-    front = surfaces.c * math.pi * surfaces.beta * surfaces.A_n / surfaces.lambda_**2
-    return front * (1.0 + math.exp(-x)) * math.exp(-surfaces.lambda_ * d / surfaces.R_q)
 
 
 def residual_eq_25(F_C: float, sigma: float, V_2: float, V_1: float, f: float, t: float) -> float:
@@ -41,15 +32,6 @@ def area_eq_20(swapped: bool, positive_exponent: bool, lengths_over_R_q: bool = 
     elastic = (1.0 - (1.0 + x) * math.exp(sign * x)) * math.exp(-decay * d / scale)
     plastic = (2.0 + x) * math.exp(-decay * (d + omega_c) / scale)
     return front * (elastic + plastic)
-
-
-def mean_over_cycle(function: Callable[[float], float], centre: float, amplitude: float) -> float:
-    """Time mean of function(centre + amplitude cos theta)."""
-
-    def at(theta: float) -> float:
-        return function(centre + amplitude * math.cos(theta))
-
-    return quad(at, 0.0, math.pi, epsabs=0.0, epsrel=1e-12)[0] / math.pi
 
 
 def yield_pressure_ratio(nu: float) -> float:

@@ -88,13 +88,6 @@ def test_regime_classes(fmu_path: Path) -> None:
     assert of([0.5], [1.4], 0.0).item() == COULOMB
 
 
-def test_motor_effect_turns_with_the_phase(mean: Mean) -> None:
-    """At V = 0 half a period later is the mirror image: the mean changes its sign with the phase by pi."""
-    forward = mean(scene(5.0, 0.0, ALPHA, 0.3))
-    assert abs(forward) > 0.01
-    assert mean(scene(5.0, 0.0, ALPHA, 0.3 + math.pi)) == pytest.approx(-forward, abs=1e-7)
-
-
 def test_limits_bracket_every_stiffness_with_constant_separation(mean: Mean) -> None:
     values = scene(np.array([0.03, 0.3, 3.0, 30.0])[:, None], np.linspace(0.01, 0.99, 9))
     means = mean(values)
