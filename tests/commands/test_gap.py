@@ -42,7 +42,6 @@ def test_what_it_prints(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.
     ("words", "message"),
     [
         ("--load -1", "--load -1: must be a positive number"),
-        ("--separation nan", "--separation nan: must be a positive number"),
         ("--load 1 --set contact.R_q=0", "--set contact.R_q 0: must be a positive number"),
         ("--load 1 --set contact.nu=0.6", "--set contact.nu=0.6: must be from 0 to 0.5"),
         ("--load 1e9", r"load = 1e\+09 N is out of reach"),

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import subprocess
 from pathlib import Path
 
 import matplotlib.image
+import pandas as pd
 import pytest
 
 from frictioncontact import table2
 from frictioncontact.command import main
-from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, Row, start_values
+from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, start_values
 from workshop.reference import scene_of, settled
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def exact_mean(row: Row, parameters: ParameterSet) -> float:
-    return settled(scene_of(start_values(row, parameters)))[0]
 
 
 @pytest.fixture(scope="module")
@@ -32,12 +28,11 @@ def written(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_csv_holds_the_means_of_the_reference(written: Path) -> None:
-    with (written / "table2.csv").open(newline="") as file:
-        table = [{name: float(value) for name, value in line.items()} for line in csv.DictReader(file)]
-    assert [line["row"] for line in table] == [1, 2, 3, 4, 5, 6]
-    for line, row in zip(table, TABLE_2, strict=True):
+    table = pd.read_csv(written / "table2.csv")
+    assert table["row"].tolist() == [1, 2, 3, 4, 5, 6]
+    for line, row in zip(table.to_dict("records"), TABLE_2, strict=True):
         for name, parameters in {"exact": PRINTED, "identified": IDENTIFIED}.items():
-            mean = exact_mean(row, parameters)
+            mean = settled(scene_of(start_values(row, parameters)))[0]
             assert line[f"{name}_N"] == pytest.approx(mean, abs=55e-6)  # solver.tolerance times F_C
             assert line[f"{name}_reduction_percent"] == pytest.approx(100 * (1 - mean / 55.0), abs=2e-4)
 
@@ -63,16 +58,8 @@ def test_files_are_written_only_if_asked(
     assert capsys.readouterr().out.startswith(printed)
 
 
-@pytest.mark.parametrize("case", ["missing FMU", "not an FMU", "output is a file"])
-def test_bad_input_is_one_clear_line(fmu_path: Path, tmp_path: Path, case: str) -> None:
-    fmu, output = fmu_path, tmp_path
-    if case == "output is a file":
-        output = wrong = tmp_path / "file"
-        output.write_text("kept")
-    else:
-        fmu = wrong = tmp_path / "another.fmu"
-    if case == "not an FMU":
-        fmu.write_text("not a zip archive")
-    with pytest.raises(SystemExit, match=f"^error: {re.escape(str(wrong))}[^\n]*$"):
-        main(table2, ["--quick", "--fmu", str(fmu), "--output", str(output)])
-    assert not (output / "table2.csv").exists()
+def test_an_output_that_is_a_file_is_one_clear_line(fmu_path: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("kept")
+    with pytest.raises(SystemExit, match=f"^error: {re.escape(str(tmp_path / 'file'))}[^\n]*$"):
+        main(table2, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "file")])
+    assert (tmp_path / "file").read_text() == "kept"

@@ -41,9 +41,7 @@ def test_csv_with_units(fmu_path: Path, tmp_path: Path) -> None:
     ("content", "message"),
     [
         ("friction.model [mm]\n1\n", ", line 1, column 1: friction.model takes no unit, not 'mm'"),
-        ("V,d\n0.1,14e-6\n0.2,abc\n", ", row 2 (line 3), column 'd': 'abc' is not a number"),
         ("V,d\n0.1\n", ", row 1 (line 2), column 'd': no value"),
-        ("V,vibration.V1\n1,2\n", ", line 1, column 2: vibration.V1 is no variable of the FMU; did you"),
         (f"V\n{'1' * 131073}\n", ": is not a CSV file: field larger than field limit (131072)"),
         ("V\n", ": has no row below the header"),
     ],
@@ -61,16 +59,11 @@ def test_malformed_csv_names_row_and_column(
     ("arguments", "message"),
     [
         ("", "nothing to sweep"),
-        ("--vary v=1", "vary v: v is no variable of the FMU; did you mean V?"),
         ("--vary V", "--vary V: is not of the form NAME=VALUE"),
         ("--vary V=1:2", "'1:2' is neither low:high:count"),
         ("--vary V=2:1:3", "vary V: the range ends at 1, before it begins at 2"),
         ("--vary V=0:1:3:log", "must begin above 0"),
         ("--vary V=0:1:-3", "the count -3: must be a whole number from 1 to 10000000"),
-        (
-            "--vary V=1 --samples 100000000000",
-            "samples 100000000000: must be a whole number from 1 to 1",
-        ),
         ("--vary V=1 --workers 0", "workers 0: must be a whole number from 1 to 1000"),
         ("--random 100001 --vary V=0:1 --group 1", "would be more than 100000 files"),
         ("--random 5 --vary V=0:1 --seed -1", "seed -1: must be a whole number from 0"),
@@ -141,11 +134,8 @@ def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"vary": ["V"]}, "vary = \"['V']\": must be a mapping of names to values"),
         ({"vary": {"V": 0.3}}, "vary V: 0.3 is neither a text nor a sequence of values"),
         ({"vary": {"V": []}}, "vary V: has no values"),
-        ({"vary": {"V": "0:1"}, "random": 5, "seed": 1.5}, "seed 1.5: must be a whole number"),
-        ({"output": __file__, "vary": {"V": "1,2"}}, f"{__file__}: can't be written: is a file"),
     ],
 )
 def test_wrong_types_from_python_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:

@@ -49,7 +49,6 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"data": "nowhere.csv"}, "nowhere.csv: No such file"),
         ({"data": {"V [m/s]": [1.0]}}, "data: column 'F_t_mean [N]' is missing"),
         ({"fit": ["F_t"]}, "F_t can't be fitted; did you mean F_C? these can: V, d"),
         ({"fit": []}, "fit: names no parameter"),
