@@ -60,17 +60,6 @@ class TestNumbers:
             expected = sampled_period(fmu, values, 40.0, samples)
             assert {name: got[name].iloc[row] for name in got} == {n: expected[n] for n in got}, values
 
-    def test_samples_are_those_of_the_steps(self, fmu_path: Path) -> None:
-        """Held V without vibration: F_t = F_C (1 - exp(-x)), x = sigma V t / F_C."""
-        sigma, V, duration = 2.5e6, np.array([0.005, 0.02]), 0.01
-        values = {"V": V, "contact.model": "Constant", "contact.sigma": sigma}
-        outputs = {"force": ("F_t", "samples"), "delta": "delta"}
-        got = simulate_many(values, outputs, unit="s", duration=duration, samples=4, fmu=fmu_path)
-        t = duration * np.arange(1, 5) / 4
-        expected = F_C * -np.expm1(-sigma * np.outer(V, t) / F_C)
-        assert got["force"] == pytest.approx(expected, rel=1e-9)
-        assert got["delta"] == pytest.approx(expected[:, -1] / sigma, rel=1e-9)
-
     def test_inputs_and_steps_are_those_of_single_sessions(self, fmu: FrictionFmu, fmu_path: Path) -> None:
         """To the bit, with a vibration that has begun before; a first step of no length reads the start."""
         random = np.random.default_rng(5)
@@ -121,11 +110,6 @@ class TestShapes:
         got = simulate_many(frame, {"F": ("F_t", "samples"), "W": "W_f"}, samples=2, fmu=fmu_path)
         assert list(got.index) == ["a", "b"]
         assert list(got.columns) == ["F[0]", "F[1]", "W"]
-
-    def test_frame_is_not_broadcast(self, fmu_path: Path) -> None:
-        """Else its index would not fit the results, which was found after they had all been computed."""
-        with pytest.raises(BatchError, match="its 2 x 1 values do not go with the 2 rows of the"):
-            simulate_many(pd.DataFrame({"V": [0.1] * 2}), settle=[[1.0], [2.0]], fmu=fmu_path)
 
     def test_one_scenario_and_none(self, fmu_path: Path) -> None:
         assert simulate_many({}, fmu=fmu_path)["F_t_mean"].shape == ()
@@ -182,6 +166,10 @@ class TestRefusals:
             ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence"),
             ({"outputs": {"a": ("F_t", "median")}}, "output a: 'median' is not one of end, change, mean"),
             ({"samples": 10**11}, "samples = 100000000000: must be a whole number from 1 to"),
+            (
+                {"values": pd.DataFrame({"V": [0.1] * 2}), "settle": [[1.0], [2.0]]},
+                "its 2 x 1 values do not go",
+            ),
             ({"settle": [1.0, -2.0]}, "settle, row 1: -2 must be at least 0"),
             ({"unit": "ms"}, "unit = 'ms': must be 'period' or 's'"),
             ({"errors": "ignore"}, "errors = 'ignore'"),

@@ -128,17 +128,6 @@ def test_no_bristle_is_farther_from_coulomb_than_the_bound(seed: int) -> None:
         assert abs(found.F_t_mean - rigid.F_t_mean) / 55.0 <= bounds[1] + 1e-14
 
 
-def test_nothing_is_proven_of_other_scenes() -> None:
-    for values in (
-        {"vibration.a_d": 1e-7},
-        {"friction.model": "LuGre"},
-        {"V": 1.0, "vibration.V_1": 1.0},
-        {"friction.limit": "Load"},
-    ):
-        assert min(coulomb_errors(start_values(scene_of(values)), 1e9, 1e-3)) == float("inf")
-    assert min(coulomb_errors(start_values(scene_of({})), 0.0, 1e-3)) == float("inf")
-
-
 def test_bad_questions_get_one_line(
     fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -17,7 +16,6 @@ from workshop.bench.work_precision import (
     period_cells,
     period_points,
     ratios,
-    renew_tables,
     step_size_points,
 )
 
@@ -46,24 +44,6 @@ def test_ratios_are_over_the_default_at_the_same_error() -> None:
     row = {"cvode": 5.0, "Radau 9": 3.0, "rk4": math.nan}
     assert cheapest(row, ["cvode", "Radau 9", "rk4", "trapezoid"]) == "3"
     assert cheapest(row, ["rk4"]) == "not reached"
-
-
-def test_the_tables_of_the_page_are_renewed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    page = tmp_path / "numerics.md"
-    page.write_text(
-        "errors of at most 1e-6 `F_C`:\n\n| old |\n\nthe last divides CPU times:\n\n| old |\n| 1 |\n\nmore\n"
-    )
-    monkeypatch.setattr(work_precision, "PAGE", page)
-    costs = [{"error": error, "case": "held", "calls": 0.5, "Radau 9": 1e9 * error} for error in (1e-6, 1e-9)]
-    shared = {"law": "Dahl", "limit": "Load", "periods": 10**6, "cpu_ratio": 1640.0}
-    steps = [shared | {"inputs": kind, "ratio": ratio} for kind, ratio in (("held", 2.0), ("moving", 16.0))]
-    renew_tables(costs, steps, {"held": "Held"})
-    text = page.read_text()
-    assert "| Held | 50 % | not reached | 1000 |" in text and "old" not in text
-    assert "| Dahl | Load | 2.00 | 16.0 | 1600 |\n\nmore" in text
-    page.write_text("a page without these words")
-    with pytest.raises(ValueError, match="0 tables"):
-        renew_tables([], steps, {})
 
 
 def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> None:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import zipfile
 from collections.abc import Callable
@@ -125,29 +123,3 @@ def test_what_is_no_library_is_not_packed(fmu_path: Path, tmp_path: Path) -> Non
         with pytest.raises(ValueError, match=f"^{library} is .*: remove it and build again$"):
             write_fmu(library.with_suffix(".fmu"), xml, {"linux64": library}, {}, {})
     assert list(tmp_path.iterdir()) == [library]
-
-
-@pytest.mark.skipif(os.name != "posix", reason="the rights are POSIX's")
-def test_a_project_that_can_not_be_written() -> None:
-    """One line of the set-up's own. Root may write everywhere, so it is another user who tries."""
-    with tempfile.TemporaryDirectory() as folder:
-        scripts = Path(folder, "scripts")
-        scripts.mkdir()
-        for name in (
-            "scripts/setup",
-            "requirements.txt",
-            "constraints.txt",
-            "pyproject.toml",
-            "modelDescription.xml",
-        ):
-            shutil.copy(ROOT / name, Path(folder, name))
-        for path in (Path(folder), scripts):
-            path.chmod(0o555)
-        other = {"user": 65534, "group": 65534, "extra_groups": ()} if os.geteuid() == 0 else {}
-        done = subprocess.run(
-            ["bash", "scripts/setup", "run"], cwd=folder, capture_output=True, text=True, **other
-        )
-        for path in (Path(folder), scripts):
-            path.chmod(0o755)
-    assert done.returncode == 1
-    assert done.stderr == f"error: {folder} can't be written: .venv and build go there\n"

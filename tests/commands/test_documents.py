@@ -28,6 +28,7 @@ from workshop.fmu_docs.readme import SCENE
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])
+PHYSICS = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
 USING = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
 ROWS = [[cell.strip() for cell in line[1:].split("|")] for line in USING.splitlines() if line[:1] == "|"]
 # And what it prints.
@@ -96,14 +97,11 @@ def test_the_force_beyond_the_limit_is_what_the_equations_page_says(fmu: Frictio
     row_4 = start_values(TABLE_2[3], IDENTIFIED) | {"initialState": "Settled"}
     period = simulate(fmu, row_4, PERIOD / 1000, 1000)
     most = np.max(period["F_t"]) / COULOMB_FORCE
-    page = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
-    said = f"in row 4 of Table 2 with the identified parameters it reaches {most:.2f} F_C."
-    assert said in " ".join(page.split())
+    assert f"in row 4 of Table 2 with the identified parameters it reaches {most:.2f} F_C." in PHYSICS
 
 
 def test_the_limits_of_the_equations_are_those_of_their_page(fmu: FrictionFmu) -> None:
     """The normal reaction (delta^2/2) |d sigma/dd| in sliding, and the deflection F_C/sigma itself."""
-    page = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
     reactions, F_n = [], 0.0
     for model in ("Asperities", "Mindlin"):
         scale = IDENTIFIED.stiffness / STIFFNESS_PRINTED if model == "Asperities" else 1.0
@@ -115,16 +113,15 @@ def test_the_limits_of_the_equations_are_those_of_their_page(fmu: FrictionFmu) -
         below, at, above = sigma.values()
         reactions.append(0.5 * (COULOMB_FORCE / at) ** 2 * (below - above) / 2e-10)
     said = f"{reactions[0]:.0f} N beside F_n = {F_n:.0f} N at the identified"
-    assert said in page and f"{reactions[1]:.2f} N at Mindlin's" in page
+    assert said in PHYSICS and f"{reactions[1]:.2f} N at Mindlin's" in PHYSICS
     delta = COULOMB_FORCE / IDENTIFIED.stiffness
-    assert f"{1e6 * delta:.1f} µm or {delta / 6e-6:.1f} R_q" in page
+    assert f"{1e6 * delta:.1f} µm or {delta / 6e-6:.1f} R_q" in PHYSICS
 
 
 def test_static_friction_under_vibration_is_what_the_page_says(fmu: FrictionFmu) -> None:
     """77 N and a swing of sigma V_1 / omega break away at 82.5 N; so does a constant V, whatever it is."""
-    page = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
     (left,) = laws.bound_with_total_velocity(np.array([0.02]))
-    assert f"only {left:.1f} N would remain at V₁ = 20 mm/s" in page
+    assert f"only {left:.1f} N would remain at V₁ = 20 mm/s" in PHYSICS
     breaks = 5.5 * 2.0 * np.pi * 20e3 / 2.5e6  # m/s
     assert laws.vibrated(fmu, 0.999 * breaks) == pytest.approx(77.0)
     assert laws.vibrated(fmu, 1.001 * breaks) < 60.0

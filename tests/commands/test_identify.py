@@ -14,7 +14,6 @@ from scipy import stats
 from scipy.optimize import least_squares
 
 import frictioncontact as fc
-from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
@@ -37,7 +36,7 @@ ELASTIC = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
 
 
 def test_exact_data_give_the_truth_from_no_start_value(fmu_path: Path) -> None:
-    truth = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
+    truth = {"contact.stiffnessScale": 2e-6, "vibration.phase_d": 2.2, "F_C": 160.0}
     grid = np.array([(V, a, d) for V in (0.2, 0.6) for a in (0.5, 1.0, 1.5) for d in (0.0, 1e-6)]).T
     rows = dict(zip(("V", "vibration.V_1", "vibration.a_d"), grid, strict=True))
     means = fc.simulate_many({**rows, **truth, "solver.tolerance": 1e-9}, ["F_t_settled"], fmu=fmu_path)
@@ -47,15 +46,6 @@ def test_exact_data_give_the_truth_from_no_start_value(fmu_path: Path) -> None:
         assert found.values[name] == pytest.approx(right, rel=1e-5)
         assert right * 0.999 < low < right < high < right * 1.001
     assert "can't tell" not in str(found)
-
-
-def test_a_limit_far_from_the_start_value_is_found(fmu_path: Path) -> None:
-    """ElasticPlastic from rest at a constant V: F_t = min(sigma V t, F_C)."""
-    F_C, sigma = 200.0, 1e7  # N, N/m
-    time = np.linspace(0.0, 5.0 * F_C / (sigma * 0.02), 15)
-    data = pd.DataFrame({"time": time, "V": 0.02, "F_t": np.minimum(sigma * 0.02 * time, F_C)})
-    found = fc.identify(data, ["contact.sigma", "F_C"], start=ELASTIC, fmu=fmu_path).values
-    assert found == pytest.approx({"contact.sigma": sigma, "F_C": F_C}, rel=1e-3)
 
 
 def test_profile_is_the_hull_of_the_region_on_a_grid(fmu: FrictionFmu) -> None:
@@ -235,24 +225,6 @@ def test_what_simulate_writes_gives_the_truth(
     start = {name: value for name, value in scene.items() if name not in (*fit, "delta_0")}
     found = fc.identify(data[first:], fit, start=start, fmu=fmu_path)
     assert list(found.values.values()) == pytest.approx([scene[name] for name in fit], rel=0.002)
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("--fit F_C --fit vibration.V_1", "vibration.V_1 is a column of the measurements"),
-        ("--fit F_C --fit contact.eta --fit d --fit E", "3 rows can't give 4 parameters"),
-        ("--fit F_C=-3", r"F_C = -3 N must be from 1e-12"),
-        ("--fit F_C --set F_C=50", "F_C is given as a start value"),
-        ("--fit F_C --set vibration.a_d=20e-6", "row 1: .*"),
-        ("--fit F_C --uncertain F_t_mean=5%", "row 3 measures 0 N, so give it in N"),
-    ],
-)
-def test_bad_requests_are_refused(fmu_path: Path, tmp_path: Path, words: str, message: str) -> None:
-    path = tmp_path / "good.csv"
-    path.write_text(HEADER + GOOD + "50,0.5,0\n")
-    with pytest.raises(SystemExit, match=f"error: .*{message}"):
-        main(identify, [str(path), "--fmu", str(fmu_path), "--output", str(tmp_path), *words.split()])
 
 
 def test_a_record_without_scatter_is_judged(fmu_path: Path) -> None:

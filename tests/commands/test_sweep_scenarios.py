@@ -13,7 +13,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.sweeps import run as command
 from frictioncontact.sweeps.run import sweep
-from frictioncontact.sweeps.scenarios import MOST_SCENARIOS, Range, Vary, drawn, grid
+from frictioncontact.sweeps.scenarios import MOST_SCENARIOS, Vary, drawn, grid
 
 
 def table(fmu_path: Path, folder: Path, *arguments: str) -> pd.DataFrame:
@@ -105,17 +105,6 @@ def test_a_row_of_a_thousand_million_depends_on_its_number_alone(fmu: FrictionFm
     assert np.allclose(drew["d"], 12e-6 + 4e-6 * u[1], rtol=1e-12, atol=0.0)
     assert np.array_equal(drew["friction.model"], np.where(u[2] < 0.5, "Dahl", "Coulomb"))
     assert abs(np.corrcoef(u[0], u[1])[0, 1]) < 0.016  # 5 sigma
-
-
-@pytest.mark.parametrize("logarithmic", [False, True])
-@pytest.mark.parametrize(("low", "high"), [(0.1, 0.3), (1e-300, 1e300), (0.7, 0.7)])
-def test_ranges_keep_their_ends(low: float, high: float, logarithmic: bool) -> None:
-    spread = Range(low, high, logarithmic)
-    for values in (spread.spaced(1001), spread.at(np.linspace(0.0, 1.0, 1001))):
-        assert (values[0], values[-1]) == pytest.approx((low, high), rel=1e-12, abs=0.0)
-        assert values.min() >= low and values.max() <= high
-        assert (np.diff(values) >= 0.0).all()
-    assert tuple(spread.spaced(1001)[[0, -1]]) == (low, high)
 
 
 def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:

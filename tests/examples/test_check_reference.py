@@ -43,14 +43,6 @@ def test_a_changed_result_is_missed(unpacked: Path) -> None:
     ]
 
 
-def test_another_parameter_set_is_missed(unpacked: Path) -> None:
-    path = unpacked / FOLDER / "table2-row2-identified.ssv"
-    path.write_text(path.read_text(encoding="utf-8").replace('"1.44"', '"1.43"'), encoding="utf-8")
-    found = [f"{column.experiment}: {column.name}" for column in check(unpacked) if not column.is_met]
-    assert "table2-row2-identified: F_t" in found
-    assert not any(name.startswith("default-experiment") for name in found)
-
-
 def test_what_is_wrong_is_one_line(unpacked: Path) -> None:
     for file, text, message in (
         ("table2-row2-identified.ssv", None, "table2-row2-identified.ssv can't be read: No such file"),

@@ -90,9 +90,3 @@ def test_a_transverse_swing(fmu_path: Path) -> None:
         swings = motor.scene(10.0, V_2=0.3, phase_2=phase_2)
         assert f" {float(motor.thrust(swings, np.array(0.0))):.2f} N " in " ".join(PAGE.split())
         assert f" {1e3 * motor.speed_at(swings):.1f} mm/s" in " ".join(PAGE.split())
-
-
-def test_the_picture_is_drawn(fmu_path: Path, tmp_path: Path) -> None:
-    path = tmp_path / "folder" / "motor.png"
-    motor.draw(path)
-    assert path.stat().st_size > 10_000

@@ -43,23 +43,16 @@ def test_the_link_restores_the_scene(playground: Playground, offered: list[Prese
 
 
 def test_a_refused_value_is_not_copied(playground: Playground, scene: Preset) -> None:
-    """The texts are those of the last accepted scene, and the numbers fade with the figures."""
+    """The texts are those of the last accepted scene."""
     playground.choose(scene)
     kinds = ("fmpy", "Python", ".ssv", "CSV", "Link")
     before = {kind: playground.text(kind) for kind in kinds}
-    opacity = "getComputedStyle(document.querySelector('#numbers')).opacity"
-    assert playground.page.evaluate(opacity) == "1"
     playground.enter("d", "-7")
     assert "must be above 0 m" in playground.refusal("d")
     assert {kind: playground.text(kind) for kind in kinds} == before
-    assert (
-        playground.page.evaluate(opacity)
-        == playground.page.evaluate(opacity.replace("#numbers", ".plot"))
-        != "1"
-    )
     assert "the last scene that the FMU accepted" in playground.page.locator("#copied").inner_text()
     playground.enter("d", "13")
-    assert playground.text("Link") != before["Link"] and playground.page.evaluate(opacity) == "1"
+    assert playground.text("Link") != before["Link"]
 
 
 def test_the_command_runs(
@@ -101,9 +94,7 @@ def test_the_parameter_set_holds_the_scene(
         path.write_text(playground.text(".ssv"), encoding="utf-8")
         root = etree.parse(path).getroot()
         schema.assertValid(root)
-        found = {
-            each.get("name"): each[0].get("value") for each in root.iterfind("{*}Parameters/{*}Parameter")
-        }
+        found = {one.get("name"): one[0].get("value") for one in root.iterfind("{*}Parameters/{*}Parameter")}
         restored = {
             name: type(value)(found.get(name, VARIABLES[name]["start"]))
             for name, value in preset.values.items()

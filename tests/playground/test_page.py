@@ -11,7 +11,6 @@ from playwright.sync_api import Browser
 
 from workshop.browser import SIZES
 from workshop.playground.command import SCHEMES
-from workshop.presets import Preset
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -60,16 +59,6 @@ def test_the_core_imports_nothing(playground: Playground, html: Path) -> None:
     )
     assert imports == []
     assert {"fmi2DoStep", "fmi2SetReal", "fmi2GetReal", "fmi2Reset", "host_message"} <= set(exports)
-
-
-def test_axes_have_labels_and_no_reduction_is_rounding(playground: Playground, offered: list[Preset]) -> None:
-    for preset in offered[::3]:
-        playground.choose(preset)
-        for figure in ("force", "loop"):
-            for side in ("middle", "end"):  # of the x and of the y axis
-                labels = playground.page.locator(f'#{figure} .grid text[text-anchor="{side}"]')
-                assert labels.count() >= 2, (preset.id, figure, side)
-        assert "·10" not in playground.page.locator("#reduction").inner_text(), preset.id
 
 
 def test_the_plane_is_shown_when_something_moves_in_it(playground: Playground) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -166,38 +166,29 @@ def verdicts(each: int = EACH) -> Iterator[Verdict]:
         yield from pool.map(verdict, cases, chunksize=5)
 
 
-def table(found: list[Verdict], of: Mapping[str, Any]) -> pd.DataFrame:
-    rows = {}
-    for name, chosen in of.items():
-        part = [one for one in found if chosen(one)]
-        shows = [one for one in part if one.shows]
-        held = [is_held for one in part for is_held in one.held.values()]
-        silent = [one for one in part if not one.misfits and one.narrow_and_wrong]
-        rows[name] = {
-            "rigs": len(part), "shown by the data": len(shows),
-            "of these doubted": sum(one.misfits > 0 for one in shows),
-            "named": sum(one.named for one in part), "doubted": sum(one.misfits > 0 for one in part),
-            "not judged": sum(not one.judged and not one.misfits for one in part),
-            "intervals": len(held), "hold the truth": sum(held),
-            "narrow, wrong, no misfit": len(silent),
-            "though shown": sum(one.shows for one in silent),
-            "and no other word": sum(one.judged and not one.hidden for one in silent),
-        }  # fmt: skip
-    return pd.DataFrame.from_dict(rows, orient="index")
+def table(found: list[Verdict]) -> pd.DataFrame:
+    """Counts by fault and by kind of data."""
+    rows = [
+        {
+            "fault": one.rig.fault, "kind": one.rig.kind, "rigs": 1, "shown by the data": one.shows,
+            "doubted": one.misfits > 0, "of these shown": one.misfits > 0 and one.shows, "named": one.named,
+            "not judged": not one.judged and not one.misfits,
+            "intervals": len(one.held), "hold the truth": sum(one.held.values()),
+            "narrow, wrong, no misfit": one.narrow_and_wrong and not one.misfits,
+        }
+        for one in found
+    ]  # fmt: skip
+    counts = pd.DataFrame(rows)
+    return pd.concat([counts.groupby(by).sum(numeric_only=True) for by in ("fault", "kind")])
 
 
 def main() -> None:
-    """The table; what a user reads of each rig with --sentences; so many rigs of a fault with a number."""
-    words = sys.argv[1:]
-    found = list(verdicts(next((int(word) for word in words if word.isdigit()), EACH)))
-    for one in found if "--sentences" in words else ():
+    """The table; what a user reads of each rig with --sentences."""
+    found = list(verdicts())
+    for one in found if "--sentences" in sys.argv else ():
         about = f"{one.rig.fault}, {one.rig.kind}, {one.rig.start['friction.model']}"
         print(f"[{about}; the data show it: {one.shows}; held: {one.held}] {one.said}\n")
-    by_fault = {fault: lambda one, fault=fault: one.rig.fault == fault for fault in FAULTS}
-    kinds = ("rows by V", "rows by V_1", "record")
-    by_kind = {kind: lambda one, kind=kind: one.rig.kind == kind for kind in kinds}
-    pd.set_option("display.width", 250, "display.max_columns", 20)
-    print(table(found, by_fault | by_kind).to_string())
+    print(table(found).to_string())
 
 
 if __name__ == "__main__":
