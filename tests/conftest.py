@@ -66,9 +66,9 @@ def fmu(fmu_path: Path) -> Iterator[FrictionFmu]:
         yield loaded
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
-    """A headless Chromium, closed after a file's tests: a process can have one at a time."""
+    """A headless Chromium: a process can have one at a time."""
     from workshop.browser import chromium, find_browser
 
     if find_browser() is None:

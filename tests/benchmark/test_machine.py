@@ -38,7 +38,7 @@ def test_the_page_says_what_a_master_errs_by(fmu: FrictionFmu, master: str, vibr
 def test_the_page_says_what_an_integrator_and_a_law_err_by(
     fmu: FrictionFmu, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With vibration, of which only the first part is run, the integrator's error grows to what the page says."""
+    """With vibration, of which the first part is run, the integrator's error grows to the page's."""
     ((still,), (vibrating,)) = (said(vibrates, machine.MODEL_EXCHANGE) for vibrates in (False, True))
     assert 100.0 * machine.by_exchange(fmu, False, 1e-6) == pytest.approx(still, rel=0.5)  # CVODE's steps
     (stated,) = said(True, machine.OWN)
