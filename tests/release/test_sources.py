@@ -9,23 +9,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from fmpy import supported_platforms
 from fmpy.model_description import read_build_description
 from lxml import etree
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, simulate
-
-
-@pytest.fixture
-def without_binaries(fmu_path: Path, tmp_path: Path) -> Path:
-    """The FMU as it would be without any library."""
-    bare = tmp_path / "FrictionContact.fmu"
-    with zipfile.ZipFile(fmu_path) as whole, zipfile.ZipFile(bare, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in whole.namelist():
-            if not name.startswith("binaries/"):
-                archive.writestr(name, whole.read(name))
-    assert supported_platforms(bare) == ["c-code"]
-    return bare
 
 
 @pytest.fixture
