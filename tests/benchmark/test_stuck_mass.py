@@ -168,18 +168,3 @@ def test_the_advice_can_be_pasted(fmu: FrictionFmu, capsys: pytest.CaptureFixtur
 
 def test_a_step_that_nothing_makes_stable_is_said() -> None:
     assert "No friction.sigma_1 makes a step" in advice(M, SIGMA, JACOBI, 0.6 * TIME)[0]
-
-
-def test_wrong_options_are_one_line() -> None:
-    needs = "mass needs step and takes no inputs"
-    for words, message in (
-        (["0", "--step", "1e-4"], "mass 0 kg: must lie between"),
-        (["1", "--step", "1e300"], "step 1e+300 s: must lie between"),
-        (["1"], needs),
-        (["1", "--step", "1e-4", "--inputs", "drive.csv"], needs),
-        (["1", "--step", "1e-4", "--set", "friction.model=Coulomb"], "Coulomb never sticks"),
-    ):
-        with pytest.raises(SystemExit) as ended:
-            main(advise, ["--mass", *words])
-        assert message in str(ended.value)
-        assert "\n" not in str(ended.value)

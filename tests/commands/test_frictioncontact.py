@@ -77,17 +77,3 @@ def test_wrong_arguments_are_one_line(capsys: pytest.CaptureFixture[str]) -> Non
         assert capsys.readouterr().err == f"{name}: error: {message}; see {name} --help\n"
     # A value, and no option, for which argparse takes the form -1e-4 up to Python 3.13.
     assert simulation.arguments(["--stop", "1", "--step", "-1e-4"]).step == -1e-4
-
-
-def test_a_sweep_without_its_extra_has_help_and_says_how_to_get_it() -> None:
-    program = (
-        "import sys; sys.modules['pyarrow'] = None; sys.argv = ['frictioncontact', 'sweep', *{}];"
-        "from frictioncontact.__main__ import main; main()"
-    )
-    for words, start, said in (
-        (["--help"], "usage: frictioncontact sweep", ""),
-        (["--vary", "V=1,2"], "", "error: sweeps need pyarrow: pip install 'frictioncontact[sweep]'\n"),
-    ):
-        code = [sys.executable, "-c", program.format(words)]
-        done = subprocess.run(code, capture_output=True, text=True)
-        assert (done.stdout[: len(start)], done.stderr) == (start, said)
