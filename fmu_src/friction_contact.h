@@ -40,7 +40,7 @@ typedef struct {
         int method;         // FcMethod
         double tolerance;   // 1
         double stepSize;    // s
-        double evaluations; // 1, evaluations of the coefficients of the bristle's equation since the start
+        double evaluations; // 1, the work since the start, in evaluations of the coefficients
     } solver;
     double F_t_settled; // N  output, computed when it is read and not stored: 0 here (settled_force.h)
     double V_y;         // m/s  input, across V

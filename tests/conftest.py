@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import signal
+import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,6 +60,36 @@ def fmu_path() -> Path:
     return path
 
 
+Entries = dict[str, bytes]
+
+
+@pytest.fixture
+def repacked(fmu_path: Path, tmp_path: Path) -> Callable[[Callable[[Entries], object]], Path]:
+    """Gives a copy of the FMU, whose entries a function changes."""
+
+    def pack(change: Callable[[Entries], object]) -> Path:
+        with zipfile.ZipFile(fmu_path) as archive:
+            entries = {name: archive.read(name) for name in archive.namelist()}
+        change(entries)
+        with zipfile.ZipFile(tmp_path / "FrictionContact.fmu", "w") as archive:
+            for name, content in entries.items():
+                archive.writestr(name, content)
+        return tmp_path / "FrictionContact.fmu"
+
+    return pack
+
+
+@pytest.fixture
+def without_binaries(repacked: Callable[[Callable[[Entries], object]], Path]) -> Path:
+    """The FMU with its sources alone."""
+
+    def bare(entries: Entries) -> None:
+        for name in [name for name in entries if name.startswith("binaries/")]:
+            del entries[name]
+
+    return repacked(bare)
+
+
 @pytest.fixture(scope="session")
 def fmu(fmu_path: Path) -> Iterator[FrictionFmu]:
     """The FMU, loaded once for all tests."""
@@ -66,9 +97,9 @@ def fmu(fmu_path: Path) -> Iterator[FrictionFmu]:
         yield loaded
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
-    """A headless Chromium, closed after a file's tests: a process can have one at a time."""
+    """A headless Chromium: a process can have one at a time."""
     from workshop.browser import chromium, find_browser
 
     if find_browser() is None:

@@ -142,6 +142,7 @@ def test_bad_questions_get_one_line(
         ([*OPEN, "friction.limit=Load"], "friction.mu F_n = 0 N: must be above 0 N"),
         ([*OPEN, *mass], "mass: sigma = 0 N/m: must be above 0 N/m"),
         (["--mass", "0", "--step", "1e-4"], "mass 0 kg: must lie between"),
+        (["--mass", "1", "--step", "1e300"], "step 1e+300 s: must lie between"),
         (["--mass", "1"], "mass needs step and takes no inputs"),
         ([*mass, "--inputs", str(uneven)], "mass needs step and takes no inputs"),
         ([*mass, "friction.model=Coulomb"], "Coulomb never sticks"),

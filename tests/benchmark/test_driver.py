@@ -9,7 +9,7 @@ import pytest
 
 from frictioncontact.fmu import FrictionFmu, simulate
 from workshop.bench.cases import PLAIN_PROGRAMS, Case, cases, expected, plain, sampled, vibrating
-from workshop.bench.driver import Bench, Job, Outcome
+from workshop.bench.driver import Bench, Outcome
 
 SOFT = replace(vibrating(6e6), starts=(0.0,), count=2)
 RIGHT: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # what several tests ask for
@@ -39,26 +39,3 @@ def test_plain_solvers_solve_the_same_equation(bench: Bench, method: str) -> Non
     for case in cases():
         if case.name in ("linear", "held", "sampled-20-linear-6e06", "vibrating-d"):
             assert error(plain(bench, method, case, 1e-10, 0.0, 0.0), case) < 1e-7, case.name
-
-
-@pytest.mark.parametrize("stages", [3, 5, 7])
-def test_radau_has_its_order(bench: Bench, stages: int) -> None:
-    """Its work for an error tells the order: h^(2 s - 1) over some decades of the tolerance."""
-    outcomes = [plain(bench, f"Radau {2 * stages - 1}", SOFT, x, 0.0, 0.0) for x in (1e-3, 1e-8)]
-    errors = [error(outcome, SOFT) for outcome in outcomes]
-    more = outcomes[1].evaluations / outcomes[0].evaluations
-    assert np.log(errors[0] / errors[1]) / np.log(more) > 1.5 * stages
-
-
-def test_calls_alone_stay_at_the_start(bench: Bench) -> None:
-    job = SOFT.job()
-    empty = bench.run(replace(job, calls=True))
-    assert empty.failure == "" and empty.evaluations < bench.run(job).evaluations
-    assert np.array_equal(empty.F, np.zeros(SOFT.count))
-
-
-def test_failures_carry_their_reason(bench: Bench) -> None:
-    stiff = vibrating(6e12)
-    refused = bench.run(stiff.job(settings={"solver.method": "explicitEuler", "solver.stepSize": 5e-5}))
-    assert "largest usable step" in refused.failure and np.isnan(refused.cpu)
-    assert "d = -1 m" in bench.run(Job({"d": -1.0}, 1e-6)).failure

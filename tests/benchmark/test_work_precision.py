@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 
 from workshop.bench import work_precision
 from workshop.bench.driver import Bench
-from workshop.bench.work_precision import (
-    Point,
-    cheapest,
-    cost_at,
-    period_cells,
-    period_points,
-    ratios,
-    step_size_points,
-)
+from workshop.bench.work_precision import Point, cost_at, period_cells, period_points, step_size_points
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:
@@ -30,20 +21,6 @@ def test_the_cost_at_an_error_is_interpolated() -> None:
     assert cost_at(points, 1e-6) == pytest.approx(10.0)
     assert cost_at(points, 1e-3) == 1.0  # loosest setting is better than asked
     assert math.isnan(cost_at(points, 1e-9))  # never reached
-
-
-def test_ratios_are_over_the_default_at_the_same_error() -> None:
-    def line(method: str, cpu: float) -> list[Point]:
-        return [replace(made(10.0**-k, cpu * k), method=method) for k in (3, 12)]
-
-    calls = replace(made(math.nan, 1.5), method="calls")
-    rows = ratios([calls, *line("collocation", 1.0), *line("Radau 9", 3.0)])
-    assert [row["error"] for row in rows] == [1e-6, 1e-9]
-    assert [row["Radau 9"] for row in rows] == pytest.approx([3.0, 3.0])
-    assert rows[0]["calls"] == pytest.approx(1.5 / (1e-6 * rows[0]["collocation_us_per_period"]))  # type: ignore[operator]
-    row = {"cvode": 5.0, "Radau 9": 3.0, "rk4": math.nan}
-    assert cheapest(row, ["cvode", "Radau 9", "rk4", "trapezoid"]) == "3"
-    assert cheapest(row, ["rk4"]) == "not reached"
 
 
 def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> None:

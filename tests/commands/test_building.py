@@ -33,7 +33,7 @@ if [[ -e $KILL_WHILE_LINKING && " $* " =~ " -o "([^ ]+) ]]; then
         *" -shared "*FrictionContact*) : >"$output"; kill -KILL 0 ;;
     esac
 fi
-exec cc "$@" -O0
+exec cc "$@" -O0 -g0
 """
 
 

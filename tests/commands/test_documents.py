@@ -39,6 +39,7 @@ EXAMPLES = [
     if path not in (*tutorial.PAGES, ROOT / "README.md")  # which tests/package/test_wheel.py runs
     for number, block in enumerate(BLOCK.findall(path.read_text(encoding="utf-8")))
 ]
+EXAMPLES += [pytest.param(*tutorial.blocks(page), id=page.stem) for page in tutorial.PAGES]
 
 
 def test_commands_exist() -> None:
@@ -67,6 +68,12 @@ def test_python_examples_run(
         warnings.simplefilter("error")
         exec(compile(code, "example", "exec"), {"__name__": "example"})
     assert shown in ("", capfd.readouterr().out)
+
+
+def test_the_pages_of_the_tutorial_are_short_and_have_pictures() -> None:
+    for page in tutorial.PAGES:
+        text = page.read_text(encoding="utf-8")
+        assert f'"{page.stem}.png"' in text and len(text.split()) <= 500
 
 
 def test_fmpy_example_of_the_readme_runs_the_scene_of_its_picture(fmu: FrictionFmu, tmp_path: Path) -> None:

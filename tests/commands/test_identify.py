@@ -8,7 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-import pandas as pd
 import pytest
 from scipy import stats
 from scipy.optimize import least_squares
@@ -236,26 +235,6 @@ def test_a_record_without_scatter_is_judged(fmu_path: Path) -> None:
         assert found.values["F_C"] == pytest.approx(np.mean(data["F_t"]), rel=accuracy)
         assert len(found.misfits) == (rise > 0.0)
     assert "is more than the scatter of neighbouring samples, 0 N" in found.misfits[0]
-
-
-LUGRE_FIT = [
-    (0.05, 0.3, 11.55820), (0.05, 0.7, 4.52370), (0.05, 1.0, 1.70537), (0.05, 1.4, 1.72025),
-    (0.2, 0.3, 41.07692), (0.2, 0.7, 17.34585), (0.2, 1.0, 10.23799), (0.2, 1.4, 7.45943),
-    (0.6, 0.3, 48.94052), (0.6, 0.7, 45.38829), (0.6, 1.0, 31.98240), (0.6, 1.4, 21.26580),
-]  # fmt: skip
-
-
-def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(fmu_path: Path) -> None:
-    """scipy's differential evolution finds a sum of squares of 15.155 in the same ranges: no less."""
-    data = pd.DataFrame(LUGRE_FIT, columns=["V", "vibration.V_1", "F_t_mean"])
-    ranges = {"contact.sigma": (1e4, 1e9), "F_C": None, "friction.staticRatio": (1, 3)}
-    ranges["friction.V_S"] = (1e-3, 1)
-    law = {"friction.model": "LuGre", "contact.model": "Constant"}
-    found = fc.identify(data, ranges, start=law, uncertain={"F_t_mean": 0.5}, fmu=fmu_path)
-    assert np.sum(found.fit.residuals**2) <= 0.25 * 15.155 * (1.0 + 1e-4)
-    for name, low, high in (("friction.staticRatio", "1", "3"), ("friction.V_S", "0.001", "1 m/s")):
-        assert f"can't tell {name}: within 95 % it may be anything from {low} to {high}" in str(found)
-    assert "can't tell contact.sigma" not in str(found)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 
 import matplotlib.image
@@ -15,15 +14,12 @@ from frictioncontact.command import main
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, start_values
 from workshop.reference import scene_of, settled
 
-ROOT = Path(__file__).resolve().parents[2]
-
 
 @pytest.fixture(scope="module")
 def written(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder that a whole run wrote to."""
     folder = tmp_path_factory.mktemp("run")
-    command = [ROOT / "scripts" / "run", "--fmu", fmu_path, "--output", folder]
-    subprocess.run(command, check=True, capture_output=True, timeout=600, cwd=ROOT)
+    main(table2, ["--fmu", str(fmu_path), "--output", str(folder)])
     return folder
 
 

@@ -31,6 +31,13 @@ def wrong(declared: list[str], pinned: dict[str, str]) -> list[str]:
     ]
 
 
+def test_what_users_install_imports_nothing_of_the_workshop_or_the_tests() -> None:
+    paths = [*(ROOT / "frictioncontact").rglob("*.py")]
+    texts = {path: path.read_text(encoding="utf-8") for path in paths}
+    foreign = re.compile(r"^\s*(from|import) (workshop|tests)\b", re.MULTILINE)
+    assert len(texts) > 30 and [path for path, text in texts.items() if foreign.search(text)] == []
+
+
 def test_what_is_declared_is_pinned_and_has_a_lower_bound() -> None:
     project = PROJECT["project"]
     extras = [one for group in project["optional-dependencies"].values() for one in group]

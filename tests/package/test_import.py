@@ -72,15 +72,3 @@ def test_a_name_that_is_none_has_a_hint() -> None:
             getattr(fc, name)
         assert str(caught.value) == f"module 'frictioncontact' has no attribute {name!r}{hint}"
         assert caught.value.obj is None  # or Python adds a second hint
-
-
-def test_plots_without_matplotlib_say_how_to_get_it() -> None:
-    code = (
-        "import sys, frictioncontact as fc; sys.modules['matplotlib'] = None\n"
-        "law = {'friction.model': 'ElasticPlastic', 'contact.model': 'Constant'}\n"
-        "fit = fc.identify(fc.contacts['steel-dry'].data, 'contact.sigma', start=law)\n"
-        "for plot in (fc.friction_law({'vibration.V_1': 1.0}).plot, fit.plot):\n"
-        "    try: plot()\n"
-        "    except fc.UserError as error: print(error)"
-    )
-    assert printed(code) == 2 * "pictures need matplotlib: pip install 'frictioncontact[plot]'\n"

