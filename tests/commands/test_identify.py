@@ -125,17 +125,6 @@ V = np.array([0.5, 1.0, 1.5, 2.0])  # m/s
 LINE = {"V": V, "F_t_mean": [60.1, 64.8, 70.2, 74.9]}  # V, and F_C + sigma_2 V
 
 
-def test_profile_of_a_parabola_is_the_linear_interval(fmu_path: Path) -> None:
-    """friction.sigma_2 adds sigma_2 V to the mean: linear, and zero may be the truth."""
-    asked, stated = {"friction.sigma_2": (0.0, 100.0)}, {"F_t_mean": 0.2}
-    found = fc.identify(LINE, asked, uncertain=stated, fmu=fmu_path)
-    F = np.array(LINE["F_t_mean"]) - 55.0
-    half = 1.959964 * 0.2 / math.sqrt(V @ V)
-    expected = (V @ F / (V @ V) - half, V @ F / (V @ V) + half)
-    assert found.fit.interval(0) == pytest.approx(expected, rel=1e-5)
-    assert found.intervals["friction.sigma_2"] == pytest.approx(expected, rel=1e-3)
-
-
 @pytest.mark.parametrize("shared", [False, True])
 def test_errors_of_inputs_widen_the_interval_by_their_share(fmu_path: Path, shared: bool) -> None:
     """An error of 0.03 m/s of V acts as one of 0.3 N; an error of sigma_2 is one in all rows."""

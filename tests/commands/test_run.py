@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import matplotlib.image
 import pandas as pd
 import pytest
 
@@ -31,15 +30,6 @@ def test_csv_holds_the_means_of_the_reference(written: Path) -> None:
             mean = settled(scene_of(start_values(row, parameters)))[0]
             assert line[f"{name}_N"] == pytest.approx(mean, abs=55e-6)  # solver.tolerance times F_C
             assert line[f"{name}_reduction_percent"] == pytest.approx(100 * (1 - mean / 55.0), abs=2e-4)
-
-
-def test_picture_shows_all_three_sources(written: Path) -> None:
-    from frictioncontact import style
-
-    pixels = matplotlib.image.imread(written / "table2.png")[..., :3]
-    for colour in style.SOURCE.values():
-        wanted = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-        assert (abs(pixels - wanted).max(axis=2) < 0.01).sum() > 5000, colour
 
 
 def test_files_are_written_only_if_asked(

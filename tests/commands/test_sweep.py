@@ -10,24 +10,21 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
-from batch.one_by_one import sampled_period
 from scipy.integrate import quad
 
-from frictioncontact.command import main
-from frictioncontact.fmu import FrictionFmu
+from frictioncontact.errors import UserError
 from frictioncontact.sweeps import run as sweep_command
-from frictioncontact.sweeps.run import sweep
-from frictioncontact.sweeps.workers import RESULTS
+from frictioncontact.sweeps.run import Swept, sweep
 
-Ran = Callable[..., SimpleNamespace]
 Started = Callable[..., subprocess.Popen]
 ROOT = Path(__file__).resolve().parents[2]
+REFUSED = ["--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2"]  # the first two of four
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
 MANY = [
     "--random", "20000", "--seed", "3", "--vary", "V=0.01:1:log", "--vary", "d=-0.1e-6:15e-6",
@@ -41,31 +38,10 @@ def command(fmu: Path, output: Path, *arguments: str) -> list[str]:
     return [*module, "--fmu", str(fmu), "--output", str(output), *arguments]
 
 
-def environment() -> dict[str, str]:
-    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-
-
-def run(fmu: Path, output: Path, *arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command(fmu, output, *arguments),
-        capture_output=True, text=True, timeout=600, env=environment(), **options,
-    )  # fmt: skip
-
-
-@pytest.fixture
-def ran(fmu_path: Path, capsys: pytest.CaptureFixture[str]) -> Ran:
-    """The command in this process: its exit status, and what it printed."""
-
-    def run_here(output: Path, *arguments: str) -> SimpleNamespace:
-        code, error = 0, ""
-        try:
-            main(sweep_command, ["--fmu", str(fmu_path), "--output", str(output), *arguments])
-        except SystemExit as ended:
-            code, error = 1, f"{ended.code}\n"
-        printed = capsys.readouterr()
-        return SimpleNamespace(returncode=code, stdout=printed.out, stderr=printed.err + error)
-
-    return run_here
+def swept(fmu: Path, output: Path, *words: str) -> Swept:
+    """What the command does, in this process."""
+    options = sweep_command.arguments(command(fmu, output, *words)[4:])
+    return sweep(**sweep_command.wanted(options))
 
 
 def wait_for(condition: Callable[[], object], seconds: float = 600.0) -> None:
@@ -89,29 +65,12 @@ def kept_rows(output: Path) -> int:
     )
 
 
-def check_grid(output: Path, fmu: FrictionFmu) -> None:
-    """All 1000 rows once and in order, with the numbers that the FMU gives in this process."""
-    table = pd.read_parquet(output / "results.parquet")
-    assert list(table["scenario"]) == list(range(1000))
-    assert not table.isna().any().any()
-    V, V_1 = np.geomspace(0.005, 0.5, 40), np.linspace(0, 1.44, 25)
-    assert np.allclose(table["V"], np.repeat(V, 25), rtol=1e-14, atol=0.0)
-    assert np.allclose(table["vibration.V_1"], np.tile(V_1, 40), rtol=1e-14, atol=0.0)
-    for k in (0, 24, 999):
-        row = table.iloc[k]
-        here = sampled_period(fmu, {name: row[name] for name in ("V", "vibration.V_1")}, None, 16)
-        assert set(here) == set(RESULTS)
-        for name in here:
-            assert row[name] == here[name], name
-
-
 @pytest.fixture
 def started() -> Iterator[Started]:
     """Starts processes in groups of their own, and ends what is left of them."""
     processes: list[subprocess.Popen] = []
 
     def start(arguments: list[str], **options: object) -> subprocess.Popen:
-        options = {"env": environment(), **options}
         processes.append(subprocess.Popen(arguments, start_new_session=True, **options))
         return processes[-1]
 
@@ -155,41 +114,39 @@ def test_reduction_is_against_the_law_s_own_friction(fmu_path: Path, tmp_path: P
 
 
 class TestRuns:
-    def test_refused_scenarios_are_kept_apart(self, ran: Ran, tmp_path: Path) -> None:
-        output = tmp_path / "sweep"
-        done = ran(output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--workers", "1")
-        assert done.returncode == 0 and "2 failed scenarios" in done.stdout, done.stderr
+    def test_refused_scenarios_are_kept_apart(self, fmu_path: Path, tmp_path: Path) -> None:
+        run, output = partial(swept, fmu_path, tmp_path / "sweep"), tmp_path / "sweep"
+        done = run(*REFUSED)
+        assert (done.good, done.refused, done.new) == (2, 2, 4) and "2 failed scenarios" in str(done)
         good, bad = pd.read_parquet(output / "results.parquet"), pd.read_parquet(output / "failed.parquet")
         assert (list(good["scenario"]), list(bad["scenario"])) == ([2, 3], [0, 1])
         assert all("d = -1e-06 m" in reason for reason in bad["reason"])
-        again = ran(output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2")
-        assert again.stdout.endswith("4 scenarios were there from an earlier run\n")
-        other = ran(output, "--vary", "V=0.1,0.3")
-        assert other.returncode == 1 and len(other.stderr.splitlines()) == 1
-        assert other.stderr.startswith("error: ") and "holds another sweep" in other.stderr
+        assert str(run(*REFUSED)).endswith("4 scenarios were there from an earlier run")
+        with pytest.raises(UserError, match="holds another sweep"):
+            run("--vary", "V=0.1,0.3")
         (output / "sweep.json").unlink()  # what the results are of is not known
-        assert "holds another sweep" in ran(output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2").stderr
+        with pytest.raises(UserError, match="holds another sweep"):
+            run(*REFUSED)
         (output / "parts").mkdir()
         (output / "parts" / "mine.txt").write_text("mine")
-        fresh = ran(output, "--vary", "V=0.1,0.3", "--fresh")
-        assert fresh.stderr == f"error: {output}: can't be written: Directory not empty\n"
+        with pytest.raises(UserError, match=f"^{output}: can't be written: Directory not empty$"):
+            run("--vary", "V=0.1,0.3", "--fresh")
         (output / "parts" / "mine.txt").unlink()
-        assert ran(output, "--vary", "V=0.1,0.3", "--fresh").returncode == 0
+        assert run("--vary", "V=0.1,0.3", "--fresh").good == 2
         assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
         assert list(pd.read_parquet(output / "results.parquet")["V"]) == [0.1, 0.3]
 
-    def test_groups_and_workers_leave_the_numbers(self, ran: Ran, tmp_path: Path) -> None:
+    def test_groups_and_workers_leave_the_numbers(self, fmu_path: Path, tmp_path: Path) -> None:
         """Each scenario has its own, whoever runs it with which others."""
         tables = []
-        for group, workers in (("250", "1"), ("33", "2")):
-            output = tmp_path / group
-            done = ran(output, *GRID, "--samples", "2", "--group", group, "--workers", workers)
-            assert f"on {workers} workers" in done.stdout, done.stderr
-            tables.append(pd.read_parquet(output / "results.parquet"))
-            assert len(list((output / "results.parquet").iterdir())) == -(-1000 // int(group))
+        for group, workers in ((250, 1), (33, 2)):
+            words = ("--samples", "2", "--group", str(group), "--workers", str(workers))
+            done = swept(fmu_path, tmp_path / str(group), *GRID, *words)
+            assert done.workers == workers and len(list(done.results.iterdir())) == -(-1000 // group)
+            tables.append(pd.read_parquet(done.results))
         assert tables[0].equals(tables[1])
 
-    def test_killed_at_any_moment(self, fmu_path: Path, ran: Ran, tmp_path: Path, started: Started) -> None:
+    def test_killed_at_any_moment(self, fmu_path: Path, tmp_path: Path, started: Started) -> None:
         """No row is lost or done twice."""
         output, arguments = tmp_path / "sweep", [*MANY, "--group", "500"]
         sweeping = started(command(fmu_path, output, *arguments))
@@ -199,8 +156,7 @@ class TestRuns:
         sweeping.kill()
         sweeping.wait()
         kept = kept_rows(output)
-        done = ran(output, *arguments)
-        assert f"{kept} scenarios were there from an earlier run" in done.stdout, done.stderr
+        assert swept(fmu_path, output, *arguments).new == 20_000 - kept
         assert {path.name for path in output.iterdir()} == {"failed.parquet", "results.parquet", "sweep.json"}
         good, bad = (pd.read_parquet(output / name) for name in ("results.parquet", "failed.parquet"))
         assert np.array_equal(np.union1d(good["scenario"], bad["scenario"]), np.arange(20_000))
@@ -208,18 +164,15 @@ class TestRuns:
         ignores_d = good["friction.model"] == "Coulomb"
         assert (bad["d"] < 0.0).all() and ((good["d"] > 0.0) | ignores_d).all() and len(bad) > 0
 
-    def test_missing_part_is_run_again(self, ran: Ran, tmp_path: Path) -> None:
+    def test_missing_part_is_run_again(self, fmu_path: Path, tmp_path: Path) -> None:
         """Cut short, in a whole sweep; and refused scenarios that are gone."""
-        arguments = ("--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--samples", "1", "--group", "1")
-        assert ran(tmp_path, *arguments).returncode == 0
-        damaged = max((tmp_path / "results.parquet").iterdir())
+        run = partial(swept, fmu_path, tmp_path, *REFUSED, "--samples", "1", "--group", "1")
+        damaged = max(run().results.iterdir())
         damaged.write_bytes(damaged.read_bytes()[:-20])
-        again = ran(tmp_path, *arguments)
-        assert "3 scenarios were there from an earlier run\n1 scenarios in" in again.stdout, again.stderr
+        assert run().new == 1
         for part in (tmp_path / "failed.parquet").iterdir():
             part.unlink()
-        again = ran(tmp_path, *arguments)
-        assert "2 scenarios were there from an earlier run\n2 scenarios in" in again.stdout, again.stderr
+        assert run().new == 2
         assert list(pd.read_parquet(tmp_path / "failed.parquet")["scenario"]) == [0, 1]
         assert list(pd.read_parquet(tmp_path / "results.parquet")["scenario"]) == [2, 3]
 
@@ -245,7 +198,8 @@ class TestRuns:
         def limited() -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
 
-        done = run(fmu_path, tmp_path / "sweep", *arguments, preexec_fn=limited)
+        sweeping = command(fmu_path, tmp_path / "sweep", *arguments)
+        done = subprocess.run(sweeping, capture_output=True, text=True, timeout=600, preexec_fn=limited)
         assert done.returncode == 1
         assert done.stderr == f"error: {tmp_path / 'sweep'}: can't be written: File too large\n"
         # The group of one scenario may come before the one that fails; nothing else is left.

@@ -13,10 +13,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from test_sweep import check_grid, kept_rows, parts, wait_for
+from test_sweep import kept_rows, parts, wait_for
 
 from frictioncontact.errors import UserError
-from frictioncontact.fmu import FrictionFmu
 from frictioncontact.sweeps import workers
 from frictioncontact.sweeps.run import sweep
 from frictioncontact.sweeps.workers import Group, Job
@@ -86,18 +85,19 @@ def test_no_workers_or_ones_of_another_version(
 
 
 def test_a_worker_is_lost_and_then_one_that_a_scenario_kills(
-    cluster: Cluster, fmu: FrictionFmu, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cluster: Cluster, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The sweep goes on without the first; a scenario that no worker survives ends it."""
     one, two = cluster.processes[-2:]
     with ThreadPoolExecutor(1) as pool:
-        sweeping = pool.submit(sweep, **WHOLE, output=tmp_path, cluster=cluster.address, fmu=fmu.path)
+        sweeping = pool.submit(sweep, **WHOLE, output=tmp_path, cluster=cluster.address, fmu=fmu_path)
         wait_for(lambda: len(parts(tmp_path)) >= 6 or sweeping.done())
         one.kill()
         assert kept_rows(tmp_path) < 900
         swept = sweeping.result(timeout=600)
     assert (swept.new, swept.workers, two.poll()) == (1000, 2, None)
-    check_grid(tmp_path, fmu)
+    alone = sweep(**WHOLE, output=tmp_path / "alone", workers=1, fmu=fmu_path)
+    pd.testing.assert_frame_equal(*map(pd.read_parquet, (swept.results, alone.results)), check_exact=True)
 
     def deadly(job: Job, group: Group) -> None:
         if group[0] <= 3 < group[1]:
