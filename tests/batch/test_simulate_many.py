@@ -106,12 +106,8 @@ class TestNumbers:
 
     def test_settled_start_is_where_settling_ends(self, fmu_path: Path) -> None:
         """And a period of it turns all work into heat: the bristle stores none, d does not move."""
-        values = {
-            "V": np.array([0.05, 0.4, 1.2])[:, None],
-            "contact.stiffnessScale": [1e-7, 1e-6],
-            "solver.tolerance": 1e-9,
-            **VIBRATING,
-        }
+        values = {"V": [[0.05], [0.4], [1.2]], "contact.stiffnessScale": [1e-7, 1e-6], **VIBRATING}
+        values["solver.tolerance"] = 1e-9
         outputs = {"mean": "F_t_mean", "work": ("W_f", "change"), "heat": ("Q_f", "change")}
         settled = simulate_many(values, outputs, settled=True, fmu=fmu_path)
         waited = simulate_many(values, outputs, settle=1e6, fmu=fmu_path)

@@ -23,7 +23,6 @@ from frictioncontact.sweeps import run as sweep_command
 from frictioncontact.sweeps.run import Swept, sweep
 
 Started = Callable[..., subprocess.Popen]
-ROOT = Path(__file__).resolve().parents[2]
 REFUSED = ["--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2"]  # the first two of four
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
 MANY = [
