@@ -26,9 +26,9 @@ defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
 
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST = """
-    test_wheel test_site test_reproducible test_identify test_sweep test_building test_sweep_cluster
-    test_scenes test_report test_c_units test_tolerance test_belt_page test_release_command
-    test_validate test_simulate_many test_random_fits test_sources
+    test_scenes test_wheel test_site test_reproducible test_report test_building test_machine test_belt_page
+    test_identify test_fuzz test_types test_sweep_cluster test_sweep test_rigs test_c_units test_importers
+    test_validate test_tolerance test_release_command test_sources test_simulate_many
 """.split()
 
 
@@ -58,6 +58,12 @@ def fmu_path() -> Path:
     if not path.is_file():
         pytest.fail(f"{path} is missing: build it with scripts/run", pytrace=False)
     return path
+
+
+@pytest.fixture(scope="session")
+def mass_on_belt(fmu_path: Path) -> Path:
+    """The second FMU of the examples."""
+    return fmu_path.parent / "examples" / "MassOnBelt.fmu"
 
 
 Entries = dict[str, bytes]
