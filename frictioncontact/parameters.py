@@ -97,7 +97,6 @@ class ParameterSet:
 PRINTED = ParameterSet("printed", VELOCITY_PRINTED, STIFFNESS_PRINTED, 0.0)
 # Three numbers (V too) adjusted to three informative rows: an identification, not a validation.
 IDENTIFIED = ParameterSet("identified", VELOCITY_IDENTIFIED, 2.5366e6, 224.94)
-IDENTIFIED_ABSOLUTE = ParameterSet("identified, mean |F|", VELOCITY_IDENTIFIED, 3.7817e6, 230.22)
 
 
 def start_values(row: Row, parameters: ParameterSet = PRINTED) -> dict[str, float]:

@@ -35,6 +35,7 @@ typedef struct {
     pthread_mutex_t lock;
     long sequences, steps, misses, refused, unknown;
     double worst; // error over the allowed error
+    double work;  // the sum of ln(1 + evaluations) over the sequences
 } Hunt;
 
 // Whether a step of the sequence misses by 1.5 allowed errors or more, in any result.
@@ -80,6 +81,7 @@ static void try_sequence(Hunt* hunt, Sequence sequence) {
     hunt->unknown += trial.unknown;
     hunt->refused += trial.refused;
     hunt->worst = fmax(hunt->worst, trial.worst);
+    hunt->work += log1p(trial.evaluations);
     if (trial.refused) {
         char text[SEQUENCE_TEXT];
         sequence_text(&sequence, text, sizeof text);
@@ -208,7 +210,9 @@ int main(int argc, char** argv) {
         run_all(&hunt);
     }
     printf(
-        "\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses, worst error %.2g\n",
-        hunt.sequences, hunt.steps, hunt.refused, hunt.unknown, hunt.misses, hunt.worst);
+        "\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses, worst error %.2g, "
+        "%.5g evaluations a sequence\n",
+        hunt.sequences, hunt.steps, hunt.refused, hunt.unknown, hunt.misses, hunt.worst,
+        exp(hunt.work / (double)hunt.sequences));
     return hunt.misses > 0 || (hunt.options.file && hunt.refused > 0);
 }

@@ -229,5 +229,6 @@ void trial_run(Trial* trial, const Sequence* sequence) {
         trial->steps++;
     }
     trial->message = run.message;
+    trial->evaluations = run.contact.state.variables.solver.evaluations;
     fc_friction_contact_free(&run.contact);
 }

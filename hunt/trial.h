@@ -50,6 +50,7 @@ typedef struct {
 typedef struct {
     int steps, unknown; // the number of steps taken, and of steps that are not judged
     double worst;       // of the ratios
+    double evaluations; // of the FMU, over all steps
     bool refused;       // whether the step after them was refused
     FcMessage message;  // why
     TrialStep taken[MOST_STEPS];

@@ -155,7 +155,7 @@ def check_hunt(extent: Extent) -> None:
 
 
 def check_near_line(extent: Extent) -> None:
-    """Random scenes along a line, and with V_y = 1e-9 m/s: they differ by two tolerances at the most."""
+    """Random scenes along a line but for V_y = 1e-9 m/s: each within the tolerance of the reference."""
     _hunt(extent, "--scenes", extent.near_line, "--near-line")
 
 

@@ -92,7 +92,7 @@ static double most_relaxation(double behind) {
 static double transient_at(const FcControl* control, const FcPart* part, const FcReached* at) {
     const double x = at->t - part->in.center;
     double behind = control->log_transient;
-    if (isfinite(part->in.length) && part->in.center > 0.0 && x >= 0.0) {
+    if (isfinite(part->in.length) && part->in.center >= 0.0 && x >= 0.0) {
         behind = fc_most(behind, control->log_force - 0.5 * at->rate * x);
     }
     return fc_least(behind, MOST_BEHIND);

@@ -11,6 +11,8 @@ import pytest
 from workshop.build import build_targets
 
 SCENES = Path(__file__).with_name("scenes.txt")
+# Evaluations a sequence: the plan of panels decides them. Rounding by another compiler moves few of them.
+WORK = {"line": 71.637, "plane": 392.05, "near-line": 25.263, "found": 278.25}
 
 
 @cache
@@ -22,13 +24,19 @@ def hunt(*options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([program(), *options], capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize(("count", "kind"), [("200", []), ("24", ["--plane"]), ("80", ["--near-line"])])
-def test_the_first_sequences_of_the_hunts_on_the_page(count: str, kind: list[str]) -> None:
+def assert_work(done: subprocess.CompletedProcess[str], kind: str) -> None:
+    work = float(done.stdout.split()[-4])
+    assert work == pytest.approx(WORK[kind], rel=5e-3), "more or less work: say why, and renew WORK"
+
+
+@pytest.mark.parametrize(("count", "kind"), [("200", "line"), ("24", "plane"), ("80", "near-line")])
+def test_the_first_sequences_of_the_hunts_on_the_page(count: str, kind: str) -> None:
     """Of docs/reliability.md: every law, contact, limit, jumps; leaps in the plane; a line is its limit."""
-    done = hunt("--seed", "1", "--scenes", count, *kind)
+    done = hunt("--seed", "1", "--scenes", count, *([] if kind == "line" else [f"--{kind}"]))
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"\n{count} sequences of " in done.stdout and " 0 refused" in done.stdout
-    assert kind or " 0 beyond the reference" in done.stdout  # some stiff planes are
+    assert kind != "line" or " 0 beyond the reference" in done.stdout  # some stiff planes are
+    assert_work(done, kind)
 
 
 def test_scenes_that_were_found() -> None:
@@ -37,6 +45,7 @@ def test_scenes_that_were_found() -> None:
     count = sum(line.startswith("tolerance=") for line in SCENES.read_text().splitlines())
     assert f"\n{count} sequences of " in done.stdout
     assert " 0 refused, 0 beyond the reference, 0 misses" in done.stdout
+    assert_work(done, "found")
 
 
 def test_a_miss_is_told_and_made_plain() -> None:
