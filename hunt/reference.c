@@ -782,7 +782,7 @@ static Real end_of_piece(const World* w, Real from, Real to, Real t) {
     const ReferenceScene* s = &w->scene;
     Real end = to;
     if (w->ramp || vibrates(s)) {
-        const Real pieces = w->ramp ? 1024.0L : 8.0L * s->f;
+        const Real pieces = w->ramp ? 128.0L : 8.0L * s->f;
         const Real first = w->ramp ? 0.0L : w->cycle / s->f; // s, since the start of the period
         Real k = floorl((first + t) * pieces);
         while (!(k / pieces - first > t)) {
