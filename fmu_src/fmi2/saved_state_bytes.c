@@ -39,18 +39,24 @@ typedef struct {
     const char* part; // of the state, for a message
 } Member;
 
+// The parts, as messages name them.
+#define OF_TIME "the time or a rate of an input"
+#define OF_LAST_STEP "what the last step left"
+#define OF_MODEL_EXCHANGE "what model exchange keeps"
+#define OF_INSTANCE "the state of the instance"
+
 #define AT(member) offsetof(FcSavedState, member)
 static const Member MEMBERS[] = {
-    {AT(friction.time), REAL, 4 + 2 * FC_INPUT_COUNT, "the time or a rate of an input"},
-    {AT(friction.next_rate_set), FLAG, 1, "the time or a rate of an input"},
-    {AT(friction.slips), INTEGER, 1, "what the last step left"},
-    {AT(friction.past), REAL, sizeof(FcPast) / sizeof(double), "what the last step left"},
-    {AT(friction.hybrid.regime), INTEGER, 1, "what model exchange keeps"},
-    {AT(friction.hybrid.changed), FLAG, 1, "what model exchange keeps"},
-    {AT(friction.hybrid.seen_time), REAL, 6 + 2 * FC_INPUT_COUNT, "what model exchange keeps"},
-    {AT(experiment.interface), INTEGER, 2, "the state of the instance"},
-    {AT(experiment.outputs_stale), FLAG, 3, "the state of the instance"},
-    {AT(experiment.start_time), REAL, 2, "the state of the instance"},
+    {AT(friction.time), REAL, 4 + 2 * FC_INPUT_COUNT, OF_TIME},
+    {AT(friction.next_rate_set), FLAG, 1, OF_TIME},
+    {AT(friction.slips), INTEGER, 1, OF_LAST_STEP},
+    {AT(friction.past), REAL, sizeof(FcPast) / sizeof(double), OF_LAST_STEP},
+    {AT(friction.hybrid.regime), INTEGER, 1, OF_MODEL_EXCHANGE},
+    {AT(friction.hybrid.changed), FLAG, 1, OF_MODEL_EXCHANGE},
+    {AT(friction.hybrid.seen_time), REAL, 6 + 2 * FC_INPUT_COUNT, OF_MODEL_EXCHANGE},
+    {AT(experiment.interface), INTEGER, 2, OF_INSTANCE},
+    {AT(experiment.outputs_stale), FLAG, 3, OF_INSTANCE},
+    {AT(experiment.start_time), REAL, 2, OF_INSTANCE},
 };
 enum { MEMBER_COUNT = sizeof MEMBERS / sizeof *MEMBERS };
 
@@ -172,11 +178,11 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
     for (int i = 0; i < MEMBER_COUNT; i++) {
         transfer_member(cursor, &MEMBERS[i], saved);
     }
-    cursor->part = "what the last step left";
+    cursor->part = OF_LAST_STEP;
     expect(cursor, friction->slips >= -1 && friction->slips <= 1);
-    cursor->part = "what model exchange keeps";
+    cursor->part = OF_MODEL_EXCHANGE;
     expect(cursor, regime_is_sound(friction));
-    cursor->part = "the state of the instance";
+    cursor->part = OF_INSTANCE;
     expect(cursor, mode_is_sound(&saved->experiment));
 }
 

@@ -1,10 +1,9 @@
 // Coulomb's law, whose force is known at any time.
-#include <assert.h>
 #include <math.h>
 
 #include "solver/panel_error.h"
 
-enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
+enum { POINTS = FC_POINTS, LAST = FC_STAGES - 1 };
 
 void fc_coulomb_panel(const FcNodes* nodes, double speed, FcPanel* panel) {
     double F_x[POINTS];

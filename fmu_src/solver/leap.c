@@ -1,6 +1,5 @@
 #include "solver/leap.h"
 
-#include <float.h>
 #include <math.h>
 
 #include "model/extremes.h"
