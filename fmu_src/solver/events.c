@@ -351,93 +351,14 @@ static void turn_derivatives(FcCrossing* crossing, FcVector start, FcVector end)
     }
 }
 
-typedef struct {
-    const FcCrossing* crossing;
-    FcVector n;
-} Pushed;
-
-static double push_of(void* context, double t) {
-    const Pushed* of = context;
-    return push_at(of->crossing, of->n, t);
-}
-
-// A time between two at which the push is negative, by golden section; else that at which it is least.
-static double time_of_dip(Pushed* of, double a, double b, double* least, double* evaluations) {
-    static const double GOLDEN = 0.6180339887498949;
-    enum { MOST_SECTIONS = 40 }; // 0.618^40 is the root of rounding
-    double x = b - GOLDEN * (b - a);
-    double y = a + GOLDEN * (b - a);
-    double at_x = push_of(of, x);
-    double at_y = push_of(of, y);
-    for (int k = 0; k < MOST_SECTIONS && at_x >= 0.0 && at_y >= 0.0; k++) {
-        if (at_x <= at_y) {
-            b = y;
-            y = x;
-            at_y = at_x;
-            x = b - GOLDEN * (b - a);
-            at_x = push_of(of, x);
-        } else {
-            a = x;
-            x = y;
-            at_x = at_y;
-            y = a + GOLDEN * (b - a);
-            at_y = push_of(of, y);
-        }
-        *evaluations += 1.0;
-    }
-    *least = fc_least(at_x, at_y);
-    return at_x <= at_y ? x : y;
-}
-
-// The time at which the push ends along a line, where it is known at any time: the first change of its sign between the
-// points, or in a dip of the polynomial if the push itself dips there. Not a number if there is none.
-static double end_of_known_push(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel,
-                                double ends) {
-    Pushed of = {crossing, {panel->delta[0].x < 0.0 ? -1.0 : 1.0, 0.0}};
-    double t_a = nodes->t[START];
-    double at_a = panel->to_bound[START];
-    for (int i = 0; i < STAGES; i++) {
-        double t_b = nodes->t[i];
-        double at_b = panel->to_bound[i];
-        if (ends > 0.0 && ends <= 0.5 + FC_RADAU.node[i]) {
-            ends = 0.0;
-            double least = at_b;
-            const double dip = at_b < 0.0 ? t_b : time_of_dip(&of, t_a, t_b, &least, &crossing->evaluations);
-            t_b = least < 0.0 ? dip : t_b;
-            at_b = least < 0.0 ? least : at_b;
-        }
-        if (at_a > 0.0 && at_b < 0.0) {
-            return fc_root_between(push_of, &of, t_a, at_a, t_b, at_b, 0.0, 0.0, &crossing->evaluations);
-        }
-        t_a = t_b;
-        at_a = at_b;
-    }
-    return NAN;
-}
-
-// Cuts a panel that slips where its push ends; false if it does not. Along a line the end is exact; in the plane
-// the panel's own points show it better from cut to cut.
+// Cuts a panel that slips where its push ends, which its own points show better from cut to cut; false if it does not end.
 static bool cut_at_end_of_push(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h,
                                double* ends) {
-    const bool on_line = crossing->plane->on_line;
-    bool is_cut = *ends < 1.0;
+    const bool is_cut = *ends < 1.0;
     for (int cuts = 0; cuts < MOST_CUTS && *ends > 0.0 && *ends < 1.0; cuts++) {
-        const double root = on_line ? end_of_known_push(crossing, nodes, panel, *ends) : NAN;
-        if (on_line && isnan(root)) { // a dip of the polynomial alone
-            *ends = 2.0;
-            return cuts > 0;
-        }
-        *h = on_line ? fc_straight_place(&crossing->part.in, root) - crossing->at.u : *h * *ends;
-        if (!(*h > 0.0)) {
-            *ends = 0.0;
-            return true;
-        }
+        *h *= *ends;
         fc_make_again(crossing, *h, nodes, panel);
-        if (on_line) {
-            panel->to_bound[LAST] = 0.0;
-        }
         *ends = end_of_push(crossing, panel->to_bound);
-        *ends = on_line && *ends >= 0.999 ? 2.0 : *ends;
     }
     return is_cut;
 }
