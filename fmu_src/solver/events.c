@@ -202,26 +202,6 @@ static double stuck_to_bound(void* context, double u) {
     return fc_product(delta, delta) - D * D;
 }
 
-// The same, exact, in a cell of the panel between two of its points: two steps of the secant from the polynomial's root, or
-// else a bracket.
-static double meeting_of_stuck(FcCrossing* crossing, double h, double a, double at_a, double b, double at_b,
-                               double meets, double over) {
-    const double u = crossing->at.u;
-    const double x_0 = u + fc_most(meets, a) * h;
-    const double f_0 = stuck_to_bound(crossing, x_0);
-    const double x_1 = x_0 - f_0 * (b - a) * h / (at_b - at_a);
-    const double f_1 = stuck_to_bound(crossing, x_1);
-    const double x_2 = f_1 != f_0 ? x_1 - f_1 * (x_1 - x_0) / (f_1 - f_0) : x_1;
-    crossing->evaluations += 2.0;
-    const bool converges = fabs(f_0) < 1e-3 * (at_b - at_a) && fabs(f_1) <= 1e-3 * fabs(f_0) + over &&
-                           x_2 > u + a * h && x_2 < u + b * h;
-    return converges ? (x_2 - u) / h
-                     : (fc_root_between(stuck_to_bound, crossing, u + a * h, at_a, u + b * h, at_b, over, 0.0,
-                                        &crossing->evaluations) -
-                        u) /
-                           h;
-}
-
 // The shortest part to which a panel is cut whose points do not resolve the motion near its start.
 static const double SHORTENED_BY = 1.0 / 32.0;
 
@@ -230,14 +210,17 @@ static const double SHORTENED_BY = 1.0 / 32.0;
 static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, double h, double meets,
                                double over, bool* is_exact) {
     const double* f = panel->to_bound;
-    double a = 0.0;
+    const double u = crossing->at.u;
+    double a = u;
     double at_a = f[START];
     *is_exact = false;
     for (int i = 0; i < STAGES && fc_kind(crossing) == FC_STICKS && at_a < 0.0; i++) {
-        const double b = 0.5 + FC_RADAU.node[i];
-        if (b >= meets && f[i] > over) {
+        const double b = u + (0.5 + FC_RADAU.node[i]) * h;
+        if (b >= u + meets * h && f[i] > over) {
             *is_exact = true;
-            return meeting_of_stuck(crossing, h, a, at_a, b, f[i], meets, over);
+            const double root = fc_root_between(stuck_to_bound, crossing, a, at_a, b, f[i], over, 0.0,
+                                                &crossing->evaluations);
+            return (root - u) / h;
         }
         a = b;
         at_a = f[i];
