@@ -62,7 +62,7 @@ static double rounding_of_push(const FcCrossing* crossing, const double push[POI
     for (int i = 0; i < POINTS; i++) {
         largest = fc_most(largest, fabs(push[i]));
     }
-    return ROUNDING_OF_PUSH * largest;
+    return (crossing->is_stalled ? LITTLE_PUSH : ROUNDING_OF_PUSH) * largest;
 }
 
 bool fc_falls_behind(const FcCrossing* crossing, FcVector n) {
@@ -233,7 +233,7 @@ static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, doubl
 static double end_of_push(const FcCrossing* crossing, const double push[POINTS]) {
     const double rounding = rounding_of_push(crossing, push);
     double inwards[POINTS];
-    bool is_pushed = false;
+    bool is_pushed = crossing->is_stalled;
     for (int i = 0; i < POINTS; i++) {
         inwards[i] = -push[i];
         is_pushed = is_pushed || push[i] > rounding;
@@ -299,7 +299,7 @@ void fc_free_until_event(FcCrossing* crossing) {
         fc_end_slip(crossing);
         return;
     }
-    if (crossing->touches && fc_begin_slip(crossing, false)) {
+    if (crossing->touches && fc_begin_slip(crossing, crossing->is_stalled)) {
         return;
     }
     FcNodes nodes;
@@ -357,7 +357,8 @@ void fc_slip_until_event(FcCrossing* crossing) {
     }
     // A push of 0 at the start decides just after.
     double ends = end_of_push(crossing, panel.to_bound);
-    if (ends > 0.0 && panel.to_bound[START] <= rounding_of_push(crossing, panel.to_bound) &&
+    if (ends > 0.0 && !crossing->is_stalled &&
+        panel.to_bound[START] <= rounding_of_push(crossing, panel.to_bound) &&
         fc_falls_behind(crossing, direction_of(crossing))) {
         ends = 0.0;
     }
@@ -376,36 +377,4 @@ void fc_slip_until_event(FcCrossing* crossing) {
     if (is_over) {
         fc_end_slip(crossing);
     }
-}
-
-// Whether the push of a slip is rounding, or little beside the motion, at all points of a panel.
-static bool is_neutral(const FcCrossing* crossing, const FcPanel* panel) {
-    double largest = 0.0;
-    for (int i = 0; i < POINTS; i++) {
-        largest = fc_most(largest, fabs(panel->to_bound[i]));
-    }
-    return largest <= LITTLE_PUSH * fc_largest_push(crossing);
-}
-
-bool fc_slip_neutrally(FcCrossing* crossing) {
-    const Beside of = beside_bound(crossing, fc_crossing_delta(crossing), crossing->at.t);
-    if (!crossing->is_bounded || !(fabs(of.size - of.kinetic.D) <= LITTLE_PUSH * of.kinetic.D)) {
-        return false;
-    }
-    const bool was_slipping = crossing->is_slipping;
-    crossing->is_slipping = true;
-    FcNodes nodes;
-    FcPanel panel;
-    double h = fc_take_accurate(crossing, &nodes, &panel);
-    for (int cuts = 0; cuts < MOST_CUTS && !is_neutral(crossing, &panel); cuts++) {
-        h *= 0.25;
-        fc_make_again(crossing, h, &nodes, &panel);
-    }
-    if (!is_neutral(crossing, &panel)) {
-        crossing->is_slipping = was_slipping;
-        return false;
-    }
-    fc_append_panel(crossing, &nodes, &panel, h);
-    crossing->meetings += !was_slipping;
-    return true;
 }

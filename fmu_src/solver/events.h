@@ -23,7 +23,4 @@ bool fc_begin_slip(FcCrossing* crossing, bool surely);
 bool fc_falls_behind(const FcCrossing* crossing, FcVector n);
 void fc_end_slip(FcCrossing* crossing);
 
-// A bristle at its bound that is neither pushed nor left behind, but for rounding, slips along it for a panel; else false.
-bool fc_slip_neutrally(FcCrossing* crossing);
-
 #endif

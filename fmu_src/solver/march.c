@@ -63,7 +63,7 @@ static const double PROGRESS = 0x1p-40;
 // After FC_MOST_TRIES of them the march passes over 2^-50 of the part, and then over twice as much each time. Over more than
 // 2^-20 it gives up, and the step is refused.
 static void pass_over_rounding(FcCrossing* crossing, double before, int stalled) {
-    const int doublings = stalled - FC_MOST_TRIES;
+    const int doublings = stalled - 2 * FC_MOST_TRIES;
     if (doublings > 30) {
         crossing->along.offset = NAN;
         return;
@@ -91,7 +91,8 @@ static void cross_part(FcCrossing* crossing, int number) {
             }
         }
         stalled = crossing->at.u - before > PROGRESS * crossing->whole ? 0 : stalled + 1;
-        if (stalled > FC_MOST_TRIES && !fc_slip_neutrally(crossing)) {
+        crossing->is_stalled = stalled > FC_MOST_TRIES;
+        if (stalled > 2 * FC_MOST_TRIES) {
             pass_over_rounding(crossing, before, stalled);
         }
     }

@@ -53,18 +53,6 @@ static bool slips_surely(FcCrossing* crossing) {
     return true;
 }
 
-// With a constant stiffness, too, it slips until V reverses.
-static void slip_to_reversal(FcCrossing* crossing) {
-    const int side = crossing->along.offset < 0.0 ? -1 : 1;
-    if (side != crossing->part.side) {
-        fc_end_slip(crossing);
-        return;
-    }
-    const double delta = crossing->along.offset;
-    fc_note_slip(crossing, crossing->at.t, crossing->part.end, side);
-    slip_with(crossing, crossing->interval->stiffness * delta, delta, crossing->part.end);
-}
-
 typedef struct {
     const FcDrive* drive;
     double from; // s
@@ -144,10 +132,6 @@ bool fc_take_still(FcCrossing* crossing) {
         }
         return !has_moving_curve;
     case FC_SLIPS:
-        if (friction->model == FC_ELASTIC_PLASTIC && is_still && !has_moving_curve) {
-            slip_to_reversal(crossing);
-            return true;
-        }
         return friction->model == FC_ELASTIC_PLASTIC && slips_surely(crossing);
     case FC_STICKS:
         if (is_still && crossing->slips == 0) {
