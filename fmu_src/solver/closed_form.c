@@ -5,26 +5,23 @@
 
 #include "solver/affine_map.h"
 
-static FcPlaneCoefficients at_start(const FcScene* scene) {
-    FcPlane plane;
-    fc_plane_make(&plane, scene);
-    return fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
-}
-
-static void line_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
-                      FcStepResult* result) {
-    const FcCoefficients at = fc_scene_coefficients_of(scene, contact);
-    const FcMap map = fc_map_of_constant_scene(&at, h);
-    *result = fc_result_from((FcBristle){.delta = from.delta}, 1.0);
-    fc_map_apply(&map, result);
-}
-
 // Along V as on a line, transverse to V by relaxation alone.
-static void plane_step(const FcScene* scene, double h, FcBristle from, FcStepResult* result) {
-    const FcPlaneCoefficients at = at_start(scene);
-    const FcVector n =
-        at.speed > 0.0 ? (FcVector){at.V.x / at.speed, at.V.y / at.speed} : (FcVector){1.0, 0.0};
-    const FcMap along = fc_map_of_constant_scene(&(FcCoefficients){at.speed, at.sigma, at.limit}, h);
+void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
+                      FcStepResult* result) {
+    assert(h >= 0.0 && fc_drive_is_constant(&scene->drive));
+    FcCoefficients at = fc_scene_coefficients_of(scene, contact);
+    if (!fc_is_planar(scene, from)) {
+        const FcMap map = fc_map_of_constant_scene(&at, h);
+        *result = fc_result_from((FcBristle){.delta = from.delta}, 1.0);
+        fc_map_apply(&map, result);
+        return;
+    }
+    const FcVector V = {at.V, fc_drive_V_y(&scene->drive, 0.0)};
+    const double speed = hypot(V.x, V.y);
+    const FcVector n = speed > 0.0 ? (FcVector){V.x / speed, V.y / speed} : (FcVector){1.0, 0.0};
+    at.limit *= fc_stribeck(scene->friction, speed) / fc_stribeck(scene->friction, at.V);
+    at.V = speed;
+    const FcMap along = fc_map_of_constant_scene(&at, h);
     const FcMap across = {.relaxation = along.relaxation,
                           .impulse_slope = along.impulse_slope,
                           .heat_square = along.heat_square};
@@ -40,19 +37,11 @@ static void plane_step(const FcScene* scene, double h, FcBristle from, FcStepRes
     result->impulse_y = n.y * turned.impulse + n.x * turned.impulse_y;
 }
 
-void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
-                      FcStepResult* result) {
-    assert(h >= 0.0 && fc_drive_is_constant(&scene->drive));
-    if (fc_is_planar(scene, from)) {
-        plane_step(scene, h, from, result);
-    } else {
-        line_step(scene, contact, h, from, result);
-    }
-}
-
 FcBristle fc_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force) {
     assert(fc_drive_is_constant(&scene->drive));
-    const FcPlaneCoefficients at = at_start(scene);
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
     const bool has_bristle = scene->friction->model != FC_COULOMB;
     if (at.speed == 0.0 || !isfinite(at.limit / at.sigma)) {
         *force =

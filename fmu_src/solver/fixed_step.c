@@ -32,44 +32,41 @@
 #define SAMPLES_PER_PERIOD 256.0
 #define MOST_RATE_SAMPLES 1e6
 
-// The deflection and the integrals of FcStepResult.
-typedef struct {
-    double delta;   // m
-    double impulse; // N s
-    double work;    // J
-    double heat;    // J
-    double drag;    // m2/s
-} Integrals;
-
-static Integrals slope_at(const FcCoefficients* at, double delta) {
+// The rates of the deflection and of the integrals at that deflection [m].
+static FcStepResult slope_at(const FcCoefficients* at, double delta) {
     const double F = at->sigma * delta;
     const double slip = fc_relaxation_rate(at) * delta; // V - delta'
     const double rate = at->V - slip;
-    return (Integrals){rate, F, F * at->V, F * slip, rate * at->V};
+    return (FcStepResult){
+        .delta = rate, .impulse = F, .work = F * at->V, .heat = F * slip, .drag = rate * at->V};
 }
 
-static Integrals plus(Integrals y, double h, Integrals slope) {
-    return (Integrals){y.delta + h * slope.delta, y.impulse + h * slope.impulse, y.work + h * slope.work,
-                       y.heat + h * slope.heat, y.drag + h * slope.drag};
+static FcStepResult plus(FcStepResult y, double h, FcStepResult slope) {
+    y.delta += h * slope.delta;
+    y.impulse += h * slope.impulse;
+    y.work += h * slope.work;
+    y.heat += h * slope.heat;
+    y.drag += h * slope.drag;
+    return y;
 }
 
-static Integrals explicit_euler(Integrals y, double h, const FcCoefficients* start) {
+static FcStepResult explicit_euler(FcStepResult y, double h, const FcCoefficients* start) {
     return plus(y, h, slope_at(start, y.delta));
 }
 
-static Integrals backward_euler(Integrals y, double h, const FcCoefficients* end) {
+static FcStepResult backward_euler(FcStepResult y, double h, const FcCoefficients* end) {
     const double delta = (y.delta + h * end->V) / (1.0 + h * fc_relaxation_rate(end));
-    Integrals next = plus(y, h, slope_at(end, delta));
+    FcStepResult next = plus(y, h, slope_at(end, delta));
     next.delta = delta;
     return next;
 }
 
-static Integrals rk4(Integrals y, double h, const FcCoefficients* start, const FcCoefficients* middle,
-                     const FcCoefficients* end) {
-    const Integrals k1 = slope_at(start, y.delta);
-    const Integrals k2 = slope_at(middle, y.delta + 0.5 * h * k1.delta);
-    const Integrals k3 = slope_at(middle, y.delta + 0.5 * h * k2.delta);
-    const Integrals k4 = slope_at(end, y.delta + h * k3.delta);
+static FcStepResult rk4(FcStepResult y, double h, const FcCoefficients* start, const FcCoefficients* middle,
+                        const FcCoefficients* end) {
+    const FcStepResult k1 = slope_at(start, y.delta);
+    const FcStepResult k2 = slope_at(middle, y.delta + 0.5 * h * k1.delta);
+    const FcStepResult k3 = slope_at(middle, y.delta + 0.5 * h * k2.delta);
+    const FcStepResult k4 = slope_at(end, y.delta + h * k3.delta);
     return plus(plus(plus(plus(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4);
 }
 
@@ -108,8 +105,8 @@ static bool check_stability(const FcScene* scene, const char* method, double lim
 
 // A step from t to t_next; *start are the coefficients at t, and become those at t_next, if the method uses
 // both.
-static Integrals step_of(FcMethod method, const FcScene* scene, Integrals y, double t, double t_next,
-                         FcCoefficients* start) {
+static FcStepResult step_of(FcMethod method, const FcScene* scene, FcStepResult y, double t, double t_next,
+                            FcCoefficients* start) {
     const double h = t_next - t;
     if (method == FC_METHOD_EXPLICIT_EULER) {
         const FcCoefficients at = fc_scene_coefficients(scene, t);
@@ -126,14 +123,6 @@ static Integrals step_of(FcMethod method, const FcScene* scene, Integrals y, dou
     }
     const FcCoefficients middle = fc_scene_coefficients(scene, t + 0.5 * h);
     return rk4(y, h, &from, &middle, &end);
-}
-
-// A bristle beyond its bound at the end of a step is moved onto it.
-static Integrals within_bound(const FcScene* scene, double t, Integrals y) {
-    const FcScene end = fc_scene_from(scene, t);
-    FcStepResult at = {.delta = y.delta, .heat = y.heat, .drag = y.drag};
-    fc_take_onto_bound(&end, &at);
-    return (Integrals){at.delta, y.impulse, y.work, at.heat, at.drag};
 }
 
 static double steps_in(double h, double size) { return fc_most(1.0, ceil(h / size - STEP_ROUNDING)); }
@@ -169,19 +158,14 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
         start = fc_scene_coefficients(scene, 0.0);
         result->evaluations += 1.0;
     }
-    Integrals y = {result->delta, result->impulse, result->work, result->heat, result->drag};
     for (double i = 1.0; i <= steps; i += 1.0) {
         const double t_next = h * (i / steps);
-        y = step_of(method, scene, y, h * ((i - 1.0) / steps), t_next, &start);
-        if (bounded) {
-            y = within_bound(scene, t_next, y);
+        *result = step_of(method, scene, *result, h * ((i - 1.0) / steps), t_next, &start);
+        if (bounded) { // one beyond its bound is moved onto it
+            const FcScene end = fc_scene_from(scene, t_next);
+            fc_take_onto_bound(&end, result);
         }
     }
-    result->delta = y.delta;
-    result->impulse = y.impulse;
-    result->work = y.work;
-    result->heat = y.heat;
-    result->drag = y.drag;
     result->evaluations += method == FC_METHOD_RK4 ? 2.0 * steps : steps;
     return true;
 }

@@ -156,12 +156,12 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
 
 // The largest changes over a step of the ramp: of the logarithms of D, g and sigma together, and of V over
 // V_S on Stribeck's curve. Half of them doubles the steps; twice of them leaves twice the change to the 9
-// nodes of a step.
+// nodes of a step. Two turns of D in one step are not seen: they change the heat by the fourth power of the step.
 static const double STEP_OF_LOG = 0.5;
 static const double FACTOR_OF_STEP = 1.65; // its exponential
 // The largest number of steps: more than there are from the smallest number to the largest.
 static const double MOST_STEPS = 1e4;
-static const double STEP_OF_CURVE = 0.5;
+static const double STEP_OF_CURVE = 1.0 / 16.0;
 // The largest V over V_S with a curve: e^-49 of its peak remains.
 static const double END_OF_CURVE = 7.0;
 
@@ -193,40 +193,18 @@ static double step_from(const Ramp* ramp, double s) {
     return (1.0 - s) / ceil(fc_least(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
 }
 
-// The number of parts of a step on Stribeck's curve in which D is sought to turn. Two turns in one part are not
-// seen: they change the heat by the fourth power of the part.
-static const double PARTS = 8.0;
-
-static int parts_between(const Ramp* ramp, double s, double next) {
-    if (!ramp->slips || !drops(ramp)) {
-        return 1;
-    }
-    const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S) / FACTOR_OF_STEP;
-    const double moves = hypot(ramp->V, ramp->V_y) / V_S + fabs(ramp->log_V_S);
-    return (int)ceil(PARTS * fc_least(1.0, (next - s) * moves / STEP_OF_CURVE) + 1e-3);
-}
-
 // The next place to stop at after s, or the one before it at which D turns.
 static double next_stop(const Ramp* ramp, double s, double step) {
     const double next = next_place(ramp, s, step);
     AboveBound of = {ramp, 0.0};
-    double rate = bound_rate(&of, s);
-    double from = s;
-    const int parts = parts_between(ramp, s, next);
-    for (int i = 1; i <= parts; i++) {
-        const double to = i < parts ? s + (next - s) * i / parts : next;
-        const double rate_to = bound_rate(&of, to);
-        double none = 0.0;
-        const double turn = rate * rate_to < 0.0
-                                ? fc_root_between(bound_rate, &of, from, rate, to, rate_to, 0.0, 0.0, &none)
-                                : 0.0;
-        if (turn > s + 1e-9) {
-            return turn;
-        }
-        rate = rate_to;
-        from = to;
+    const double rate = bound_rate(&of, s);
+    const double rate_next = bound_rate(&of, next);
+    if (!(rate * rate_next < 0.0)) {
+        return next;
     }
-    return next;
+    double none = 0.0;
+    const double turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
+    return turn > s + 1e-9 ? turn : next;
 }
 
 // Whether a bristle that has broken away sticks between two stops: neither V nor the motion after the ramp
