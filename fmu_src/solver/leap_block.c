@@ -429,8 +429,8 @@ static double room_of_stuck(const Stuck* of, double k, double phase) {
     return fc_bound(&of->bound, t) - fc_size(stuck_at(of, t));
 }
 
-// The least room of period k, and its phase: the vertex of a parabola through three times.
-static double least_room(const Stuck* of, double k, double* phase) {
+// The least room of period k: that at the vertex of a parabola through three times.
+static double least_room(const Stuck* of, double k) {
     double least = HUGE_VAL;
     double at = 0.0;
     for (int i = 0; i < PHASES; i++) {
@@ -441,29 +441,8 @@ static double least_room(const Stuck* of, double k, double* phase) {
     const double before = room_of_stuck(of, k, (at - 1.0) / PHASES);
     const double after = room_of_stuck(of, k, (at + 1.0) / PHASES);
     const double bend = before - 2.0 * least + after;
-    *phase = (at + (bend > 0.0 ? 0.5 * (before - after) / bend : 0.0)) / PHASES;
-    return fc_least(least, room_of_stuck(of, k, *phase));
-}
-
-// The period with the least room near period k, by steps of up to `step` periods at the phase of its least room.
-static double tightest_near(const Stuck* of, double k, double step) {
-    const double last = of->block->of->count - 1.0;
-    double phase;
-    double least = least_room(of, k, &phase);
-    for (double way = step; way >= 1.0; way = floor(0.5 * way)) {
-        for (int side = -1; side <= 1; side += 2) {
-            for (;;) {
-                const double next = fc_least(fc_most(0.0, k + side * way), last);
-                const double room = room_of_stuck(of, next, phase);
-                if (!(room < least)) {
-                    break;
-                }
-                k = next;
-                least = room;
-            }
-        }
-    }
-    return k;
+    const double vertex = bend > 0.0 ? at + 0.5 * (before - after) / bend : at;
+    return fc_least(least, room_of_stuck(of, k, vertex / PHASES));
 }
 
 // Whether a bristle that sticks in the block would meet its bound in it: it is followed through the tightest period and
@@ -472,21 +451,23 @@ static bool meets_while_stuck(const Block* block, const Place* without_room, int
     Stuck of = {.block = block, .first = scene_at(block, 0.0)};
     of.bound = fc_scene_of_bound(&of.first, 0, &of.bound_law);
     of.across = fc_drive_across(&of.first.drive);
-    const int each = 1 + places / MOST_CHECKS;
+    double part = 0.0;
     double least = HUGE_VAL;
-    double tightest = 0.0;
-    for (int i = 0; i < places; i += each) {
-        double phase;
-        const double room = least_room(&of, without_room[i].k, &phase);
-        if (room < 0.0) {
-            return true;
-        }
-        tightest = room < least ? without_room[i].k : tightest;
+    for (int i = 0; i < places; i++) {
+        const double room = least_room(&of, without_room[i].k);
+        part = room < least ? without_room[i].k : part;
         least = fc_least(least, room);
     }
-    const double k = tightest_near(&of, tightest, each * periods_of_part(block));
-    for (double at = fc_most(0.0, k - 1.0); at < fc_least(k + 2.0, block->of->count); at += 1.0) {
-        const Place place = {at, 0.0, stuck_at(&of, at * block->period)};
+    const double stride = periods_of_part(block);
+    double tightest = part;
+    for (double k = fc_most(0.0, part - stride); k < fc_least(part + stride + 1.0, block->of->count);
+         k += 1.0) {
+        const double room = least_room(&of, k);
+        tightest = room < least ? k : tightest;
+        least = fc_least(least, room);
+    }
+    for (double k = fc_most(0.0, tightest - 1.0); k < fc_least(tightest + 2.0, block->of->count); k += 1.0) {
+        const Place place = {k, 0.0, stuck_at(&of, k * block->period)};
         if (meets(block, &place)) {
             return true;
         }
