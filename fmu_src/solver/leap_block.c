@@ -233,7 +233,6 @@ static bool interpolate(Block* block) {
     const double may = allowed(block);
     const double most = fc_least(MOST_POINTS, floor(MOST_PART * block->of->count));
     double before_last = HUGE_VAL;
-    double largest = 0.0;
     for (block->points = 0; block->points < most;) {
         const int j = block->points;
         const double k = period_of_point(block, j);
@@ -257,15 +256,6 @@ static bool interpolate(Block* block) {
             return true;
         }
         before_last = last;
-        largest = j > 0 ? fc_most(largest, last) : 0.0;
-        // The errors fall by a ratio from point to point. If the remaining points are too few for this ratio,
-        // the block is refused.
-        const double left = j <= 1 || last <= may ? 0.0
-                            : largest > last      ? (j - 1) * log(last / may) / log(largest / last)
-                                                  : HUGE_VAL;
-        if (j >= FEWEST_POINTS && !(j + left <= most)) {
-            return false;
-        }
     }
     return false;
 }
