@@ -21,32 +21,7 @@ static const double LITTLE_PUSH = 1e-9;
 // to it, or half of it.
 enum { MOST_CUTS = 40 };
 
-static bool has_static_friction(const FcCrossing* crossing) {
-    return fc_has_static_friction(crossing->plane->scene->friction);
-}
-
-// ---- the bound at a time ----
-
-// The bristle beside its bound, at a time.
-typedef struct {
-    double t;
-    FcPlaneCoefficients at;
-    FcPlaneBound kinetic, held; // of a bristle that slips, and the present one
-    double size;                // m, |delta|
-    FcVector n;                 // its direction
-} Beside;
-
-static Beside beside_bound(const FcCrossing* crossing, FcVector delta, double t) {
-    const FcPhase phase = fc_drive_phase(&crossing->interval->scene->drive, t);
-    Beside of = {
-        .t = t, .at = fc_plane_coefficients(crossing->plane, t, phase), .size = hypot(delta.x, delta.y)};
-    of.kinetic = fc_plane_bound(crossing->plane, &of.at, 1, t, phase);
-    of.held = has_static_friction(crossing)
-                  ? fc_plane_bound(crossing->plane, &of.at, crossing->slips, t, phase)
-                  : of.kinetic;
-    of.n = of.size > 0.0 ? (FcVector){delta.x / of.size, delta.y / of.size} : (FcVector){1.0, 0.0};
-    return of;
-}
+// ---- the push at a time ----
 
 // The push at a time of a bristle that slips in the direction n.
 static double push_at(const FcCrossing* crossing, FcVector n, double t) {
@@ -86,43 +61,52 @@ static FcVector direction_of(const FcCrossing* crossing) {
 
 // ---- the begin and the end of a slip ----
 
-// A bristle that deviates meets its bound earlier by a time, drops there, and moves on for that time.
-static void drop_derivatives(FcCrossing* crossing, const Beside* of, double push) {
-    const double V_n = fc_product(of->n, of->at.V);
-    const double V_t = fc_across(of->n, of->at.V);
+// A bristle that deviates meets its bound `held` [m] earlier by a time, drops there, and moves on for that time.
+static void drop_derivatives(FcCrossing* crossing, FcVector V, FcVector n, const FcPlaneBound* kinetic,
+                             double held, double push) {
+    const double V_n = fc_product(n, V);
+    const double V_t = fc_across(n, V);
     for (int k = 0; k < 2; k++) {
         FcVector* by = &crossing->by_start[k];
-        const double earlier = fc_product(of->n, *by) / push; // s
-        const double along = fc_across(of->n, *by);
-        const double turns = of->kinetic.D / of->held.D * (along - V_t * earlier) + V_t * earlier;
-        const double rises = (V_n - of->kinetic.rate) * earlier;
-        *by = (FcVector){rises * of->n.x - turns * of->n.y, rises * of->n.y + turns * of->n.x};
+        const double earlier = fc_product(n, *by) / push; // s
+        const double along = fc_across(n, *by);
+        const double turns = kinetic->D / held * (along - V_t * earlier) + V_t * earlier;
+        const double rises = (V_n - kinetic->rate) * earlier;
+        *by = (FcVector){rises * n.x - turns * n.y, rises * n.y + turns * n.x};
     }
 }
 
 bool fc_begin_slip(FcCrossing* crossing, bool surely) {
-    const Beside of = beside_bound(crossing, fc_crossing_delta(crossing), crossing->at.t);
-    const double push = fc_plane_push(crossing->plane, &of.at, &of.held, of.n);
+    const FcPlane* plane = crossing->plane;
+    const double t = crossing->at.t;
+    const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
+    const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
+    const FcPlaneBound held = fc_plane_bound(plane, &at, crossing->slips, t, phase);
+    const FcPlaneBound kinetic = fc_plane_bound(plane, &at, 1, t, phase);
+    const FcVector n = direction_of(crossing);
+    const double push = fc_plane_push(plane, &at, &held, n);
     if (!surely && !(push > ROUNDING_OF_PUSH * fc_largest_push(crossing))) {
         return false;
     }
-    if (!crossing->plane->on_line) {
-        drop_derivatives(crossing, &of, push);
+    if (!plane->on_line && push > 0.0) {
+        drop_derivatives(crossing, at.V, n, &kinetic, held.D, push);
     }
     // The energy that it loses is heat, also that of its small excess over the bound.
-    const double D = of.kinetic.D;
-    crossing->heat += 0.5 * of.at.sigma * (of.size - D) * (of.size + D);
-    crossing->drag += (D - of.size) * fc_product(of.n, of.at.V);
-    fc_set_delta(crossing, (FcVector){D * of.n.x, D * of.n.y});
+    const FcVector delta = fc_crossing_delta(crossing);
+    const double size = hypot(delta.x, delta.y);
+    const double D = kinetic.D;
+    crossing->heat += 0.5 * at.sigma * (size - D) * (size + D);
+    crossing->drag += (D - size) * fc_product(n, at.V);
+    fc_set_delta(crossing, (FcVector){D * n.x, D * n.y});
     crossing->meetings++;
-    crossing->touches = crossing->slips != 0 || !has_static_friction(crossing);
-    crossing->is_slipping = surely || !fc_falls_behind(crossing, of.n);
+    crossing->touches = crossing->slips != 0 || !fc_has_static_friction(plane->scene->friction);
+    crossing->is_slipping = surely || !fc_falls_behind(crossing, n);
     crossing->slips = crossing->is_slipping;
     crossing->h = 0.0;
     // In the plane its direction relaxes.
-    const double turning = of.at.sigma * D * fabs(fc_across(of.n, of.at.V));
+    const double turning = at.sigma * D * fabs(fc_across(n, at.V));
     if (turning > 0.0) {
-        crossing->control.log_transient = log(turning / (of.at.speed * fc_allowed_force(crossing->interval)));
+        crossing->control.log_transient = log(turning / (at.speed * fc_allowed_force(crossing->interval)));
     }
     return true;
 }

@@ -4,6 +4,7 @@
 
 #include "model/extremes.h"
 #include "solver/leap_block.h"
+#include "solver/march.h"
 #include "solver/tuning.h"
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
@@ -16,13 +17,13 @@ enum { WARM_UP = 3 };
 static const double FEWEST_OF_SLIPS = 60.0;
 
 // One period, or the part [from, to] of it.
-static void take_part(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double k,
-                      double from, double to, FcStepResult* total) {
+static void take_part(const FcScene* scene, const FcSolverOptions* options, double k, double from, double to,
+                      FcStepResult* total) {
     FcScene part = fc_scene_later(scene, k / scene->drive.vibration.f);
     if (from > 0.0) {
         part = fc_scene_from(&part, from);
     }
-    fc_take_pieces(law, &part, options, to - from, total);
+    fc_take_pieces(&part, options, to - from, total);
 }
 
 // The number of periods from k to the next kink, at |V| = V_1, beyond which V begins or ends to reverse, or to the next
@@ -43,31 +44,33 @@ static double to_kink(const FcScene* scene, double k) {
     return nearest;
 }
 
-double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double periods,
-               FcStepResult* total) {
+double fc_leap(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
+    const bool is_planar = fc_is_planar(scene, fc_bristle_of(total));
+    const bool is_bounded = fc_march_may_meet(scene);
     double longest = periods;
     double tries_at = 0.0;
     double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
     double k = 0.0;
     while (k < periods && total->evaluations <= FC_MOST_EVALUATIONS) {
         bool slipped = false;
-        if (law.is_bounded) { // the first period says whether it slips
+        if (is_bounded) { // the first period says whether it slips
             total->meetings = total->slip_side = 0;
-            take_part(law, scene, options, k, 0.0, period, total);
+            take_part(scene, options, k, 0.0, period, total);
             slipped = total->meetings > 0;
             k += 1.0;
         }
         const double room = fc_least(longest, fc_least(periods - k, to_kink(scene, k)));
         // On a line periods begin at the bound, if the bristle slips along it for any time.
-        const bool on_line = slipped && !law.is_planar && total->slip_side != 0;
+        const bool on_line = slipped && !is_planar && total->slip_side != 0;
         const bool forgets = slipped && !on_line;
         const double phase = on_line ? total->slip_time : 0.0;
         const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
         const double count = closes ? room - 1.0 : room;
         const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
-        const FcBlock block = {.law = &law,
-                               .scene = scene,
+        const FcBlock block = {.scene = scene,
+                               .is_planar = is_planar,
+                               .is_bounded = is_bounded,
                                .options = options,
                                .first = k,
                                .count = floor(count),
@@ -79,11 +82,11 @@ double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* o
             FcStepResult before = *total;
             total->meetings = 0;
             if (phase > 0.0) {
-                take_part(law, scene, options, k, 0.0, phase, total);
+                take_part(scene, options, k, 0.0, phase, total);
             }
             taken = (on_line || total->meetings == 0) && fc_block_take(&block, total);
             if (taken && closes) {
-                take_part(law, scene, options, k + block.count, phase, period, total);
+                take_part(scene, options, k + block.count, phase, period, total);
             } else if (!taken) {
                 before.evaluations = total->evaluations;
                 *total = before;
@@ -98,8 +101,8 @@ double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* o
         if (taken) {
             alone = FEWEST;
             k += block.count + (closes ? 1.0 : 0.0);
-        } else if (!law.is_bounded) {
-            take_part(law, scene, options, k, 0.0, period, total);
+        } else if (!is_bounded) {
+            take_part(scene, options, k, 0.0, period, total);
             k += 1.0;
         }
     }

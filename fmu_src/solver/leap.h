@@ -13,7 +13,6 @@
 #include "solver/pieces.h"
 
 // Takes *total over whole periods of a scene with moving inputs; returns how many it took, fewer if they cost too much.
-double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double periods,
-               FcStepResult* total);
+double fc_leap(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total);
 
 #endif

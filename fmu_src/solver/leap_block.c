@@ -9,6 +9,7 @@
 #include "model/extremes.h"
 #include "model/regime.h"
 #include "model/root.h"
+#include "solver/march.h"
 #include "solver/tuning.h"
 
 // FEWEST_POINTS, MOST_POINTS: the numbers of points of the interpolation. MOST_PART: the largest part of a
@@ -78,7 +79,7 @@ static bool lies_on_bound(const Block* block, double k, double delta) {
 // A period of a scene from a bristle.
 static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
     FcStepResult result = fc_result_from(start, *block->evaluations);
-    block->of->law->step(scene, block->of->options, block->period, &result);
+    fc_march_step(scene, block->of->options, block->period, &result);
     *block->evaluations = result.evaluations;
     return result;
 }
@@ -89,7 +90,7 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     for (int before = periods; before > 0; before--) {
         const FcScene scene = scene_at(block, k - before);
         FcStepResult result = fc_result_from(bristle, *block->evaluations);
-        fc_take_pieces(*block->of->law, &scene, block->of->options, block->period, &result);
+        fc_take_pieces(&scene, block->of->options, block->period, &result);
         *block->evaluations = result.evaluations;
         bristle = fc_bristle_of(&result);
     }
@@ -131,9 +132,8 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
         return sample_of_slips(block, &scene, k, numbers);
     }
     if (block->of->side == 0) {
-        numbers->map =
-            block->of->law->free_map(&scene, block->of->options, block->period, fc_size(block->start),
-                                     block->of->law->is_planar ? &numbers->across : NULL, block->evaluations);
+        numbers->map = fc_march_map(&scene, block->of->options, block->period, fc_size(block->start),
+                                    block->of->is_planar ? &numbers->across : NULL, block->evaluations);
         return true;
     }
     const FcBristle start = on_bound(&scene, block->of->side);
@@ -408,7 +408,7 @@ typedef struct {
 static FcBristle stuck_at(const Stuck* of, double t) {
     FcBristle bristle = of->block->start;
     bristle.delta += fc_drive_displacement(&of->first.drive, 0.0, t);
-    bristle.delta_y += of->block->of->law->is_planar ? fc_drive_displacement(&of->across, 0.0, t) : 0.0;
+    bristle.delta_y += of->block->of->is_planar ? fc_drive_displacement(&of->across, 0.0, t) : 0.0;
     return bristle;
 }
 
@@ -481,7 +481,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     Block found = {.of = of,
                    .period = 1.0 / of->scene->drive.vibration.f,
                    .start = fc_bristle_of(total),
-                   .numbers = of->law->is_planar ? NUMBERS : OF_MAP,
+                   .numbers = of->is_planar ? NUMBERS : OF_MAP,
                    .evaluations = &total->evaluations};
     Block* block = &found;
     if (of->side != 0 && !lies_on_bound(block, 0.0, total->delta)) {
@@ -491,7 +491,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
         return false;
     }
     FcStepResult result = *total;
-    const bool is_watched = of->side == 0 && of->warm_up == 0 && of->law->is_bounded;
+    const bool is_watched = of->side == 0 && of->warm_up == 0 && of->is_bounded;
     const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = of->count};
     Place without_room[2 * MOST_PARTS + 1]; // the period with the least room of each part
     int places = 0;
@@ -513,7 +513,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
         }
         const Numbers at = map_at(block, k);
         fc_map_apply(&at.map, &result);
-        if (of->law->is_planar) {
+        if (of->is_planar) {
             fc_map_apply_across(&at.across, &result);
         }
     }

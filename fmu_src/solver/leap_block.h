@@ -13,13 +13,13 @@
 
 // Periods that begin `phase` [s] after those of the scene.
 typedef struct {
-    const FcIntegration* law;
     const FcScene* scene;
     const FcSolverOptions* options;
-    double first, count; // the block
-    double phase;        // s
-    int side;            // of the bound at which they begin, 0 for any start
-    int warm_up;         // periods after which a bristle that meets its bound has forgotten, 0 for any start
+    bool is_planar, is_bounded; // it may meet a bound
+    double first, count;        // the block
+    double phase;               // s
+    int side;                   // of the bound at which they begin, 0 for any start
+    int warm_up; // periods after which a bristle that meets its bound has forgotten, 0 for any start
 } FcBlock;
 
 // Takes *total through the block. False, with *total unchanged but for its evaluations, if the block is not

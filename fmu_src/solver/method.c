@@ -5,13 +5,7 @@
 
 #include "model/regime.h"
 #include "solver/closed_form.h"
-#include "solver/march.h"
 #include "solver/periods.h"
-
-// The integration of the law by the default method.
-static FcIntegration integration(const FcScene* scene, bool is_planar) {
-    return (FcIntegration){fc_march_step, fc_march_map, fc_march_may_meet(scene), is_planar};
-}
 
 // By cvode or a fixed step, piece by piece.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
@@ -75,7 +69,7 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
         }
         return other_step(scene, method, cvode, options, h, result, message);
     }
-    return fc_periods_step(integration(scene, is_planar), scene, options, h, result, message);
+    return fc_periods_step(scene, options, h, result, message);
 }
 
 FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
@@ -89,7 +83,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
         return fc_slides_for_ever(scene, from, force);
     }
     FcStepResult end = fc_result_from(from, *evaluations);
-    *force = fc_periods_settled(integration(scene, fc_is_planar(scene, from)), scene, options, &end);
+    *force = fc_periods_settled(scene, options, &end);
     *evaluations = end.evaluations;
     // An excess over a bound by rounding would become heat of the first step.
     return fc_reach(scene, fc_bristle_of(&end));

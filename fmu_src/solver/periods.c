@@ -8,6 +8,8 @@
 #include "model/extremes.h"
 #include "model/regime.h"
 #include "solver/leap.h"
+#include "solver/march.h"
+#include "solver/pieces.h"
 
 // The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
 // minutes.
@@ -44,10 +46,10 @@ enum { ALONE = 250 };
 
 // Whole periods of a bounded bristle with its inputs held.
 typedef struct {
-    FcIntegration law;
     const FcScene* scene;
     const FcSolverOptions* options;
     double period; // s
+    bool is_bounded, is_planar;
     bool has_free_map;
     FcMap free_map, free_map_across;
     double edge[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
@@ -65,8 +67,8 @@ static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of
 static FcMap free_map_of(Walk* walk) {
     if (!walk->has_free_map) {
         walk->free_map =
-            walk->law.free_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
-                               walk->law.is_planar ? &walk->free_map_across : NULL, &walk->total.evaluations);
+            fc_march_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
+                         walk->is_planar ? &walk->free_map_across : NULL, &walk->total.evaluations);
         if (walk->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
             walk->free_map.offset = walk->scene->drive.V.value * walk->period;
             walk->free_map_across.offset = walk->scene->drive.V_y.value * walk->period;
@@ -91,7 +93,7 @@ static double edge_of(Walk* walk, int side) {
     FcStepResult end = {.delta = farthest, .evaluations = walk->total.evaluations};
     // With static friction the bound that is met is the one without the drop.
     const bool drops = fc_has_static_friction(walk->scene->friction);
-    walk->law.step(drops ? &bound : walk->scene, walk->options, walk->period, &end);
+    fc_march_step(drops ? &bound : walk->scene, walk->options, walk->period, &end);
     walk->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
     const double room = side * (end.delta - map->offset);
@@ -103,7 +105,7 @@ static double edge_of(Walk* walk, int side) {
 static void take_free(const Walk* walk, double n, FcStepResult* total) {
     const FcMap map = fc_map_power(&walk->free_map, n);
     fc_map_apply(&map, total);
-    if (walk->law.is_planar) {
+    if (walk->is_planar) {
         const FcMap across = fc_map_power(&walk->free_map_across, n);
         fc_map_apply_across(&across, total);
     }
@@ -118,7 +120,7 @@ static void settle(const Walk* walk, FcStepResult* total) {
         return; // nothing relaxes
     }
     total->delta = map->offset / map->relaxation;
-    total->delta_y = walk->law.is_planar ? across->offset / map->relaxation : total->delta_y;
+    total->delta_y = walk->is_planar ? across->offset / map->relaxation : total->delta_y;
 }
 
 // What a period and the power of a map cost beside their evaluations, in evaluations. Chosen empirically: with them no watched
@@ -142,7 +144,7 @@ static bool meets_after(Walk* walk, double n) {
     }
     end.meetings = 0;
     end.evaluations = walk->total.evaluations;
-    walk->law.step(walk->scene, walk->options, walk->period, &end);
+    fc_march_step(walk->scene, walk->options, walk->period, &end);
     walk->total.evaluations = end.evaluations;
     return end.meetings > 0;
 }
@@ -185,7 +187,7 @@ static double free_periods_by_steps(Walk* walk, double left) {
 // (1 - P) in n of them, with the first shift s.
 static double free_periods(Walk* walk, double left) {
     const FcMap map = free_map_of(walk);
-    if (walk->law.is_planar || map.relaxation > MOST_FORGOTTEN) {
+    if (walk->is_planar || map.relaxation > MOST_FORGOTTEN) {
         return free_periods_by_steps(walk, left);
     }
     const double delta = walk->total.delta;
@@ -317,12 +319,12 @@ static void walk_to_repetition(Walk* walk, double periods) {
     double least = INFINITY;
     double keep = 1.0;                    // the number of the next meeting that is kept
     FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
-    const int most = (walk->law.is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
+    const int most = (walk->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < most) {
         total->evaluations += OF_A_PERIOD;
         const FcStepResult before = *total;
         total->meetings = 0;
-        walk->law.step(walk->scene, walk->options, walk->period, total);
+        fc_march_step(walk->scene, walk->options, walk->period, total);
         walk->done += 1.0;
         const bool was_free = total->meetings == 0 && total->slips == 0;
         if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
@@ -353,7 +355,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
-            } else if (walk->law.is_planar && isinf(periods) && !was_free &&
+            } else if (walk->is_planar && isinf(periods) && !was_free &&
                        meetings < MOST_MEETINGS / 2) { // the mean over the last third must be one
                 const int cycle = !has_cycles ? 1 : meetings > ALONE ? last_cycle(met, count, total) : 0;
                 if (cycle > 0 && take_newton_step(walk->scene, &met[count - cycle], cycle, &least, total)) {
@@ -374,19 +376,19 @@ static void walk_to_repetition(Walk* walk, double periods) {
     }
 }
 
-static Walk walk_from(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                      const FcStepResult* start) {
-    return (Walk){.law = law,
-                  .scene = scene,
+static Walk walk_from(const FcScene* scene, const FcSolverOptions* options, const FcStepResult* start) {
+    return (Walk){.scene = scene,
                   .options = options,
                   .period = 1.0 / scene->drive.vibration.f,
+                  .is_bounded = fc_march_may_meet(scene),
+                  .is_planar = fc_is_planar(scene, fc_bristle_of(start)),
                   .total = *start};
 }
 
-static double step_over_equal_periods(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                                      double periods, FcStepResult* total) {
-    Walk walk = walk_from(law, scene, options, total);
-    if (!law.is_bounded) {
+static double step_over_equal_periods(const FcScene* scene, const FcSolverOptions* options, double periods,
+                                      FcStepResult* total) {
+    Walk walk = walk_from(scene, options, total);
+    if (!walk.is_bounded) {
         free_map_of(&walk);
         take_free(&walk, periods, &walk.total);
         *total = walk.total;
@@ -415,8 +417,8 @@ static FcSolverOptions options_until_end(const FcSolverOptions* options, const F
     return own;
 }
 
-bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
-                     FcStepResult* result, FcMessage* message) {
+bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, double h, FcStepResult* result,
+                     FcMessage* message) {
     const double f = scene->drive.vibration.f;
     const bool is_linear = fc_drive_is_linear(&scene->drive);
     const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
@@ -438,19 +440,19 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     }
     double done = periods;
     if (periods < 2.0) {
-        fc_take_pieces(law, scene, options, h, result);
+        fc_take_pieces(scene, options, h, result);
     } else if (is_linear) {
-        done = fc_leap(law, scene, options, periods, result);
+        done = fc_leap(scene, options, periods, result);
         if (has_rest) {
             const FcScene later = fc_scene_later(scene, periods / f);
-            fc_take_pieces(law, &later, options, rest, result);
+            fc_take_pieces(&later, options, rest, result);
         }
     } else if (fc_scene_is_loose(scene)) {
         fc_loose_step(result);
     } else {
-        done = step_over_equal_periods(law, scene, options, periods, result);
+        done = step_over_equal_periods(scene, options, periods, result);
         if (has_rest) {
-            fc_take_pieces(law, scene, options, rest, result);
+            fc_take_pieces(scene, options, rest, result);
         }
     }
     if (result->evaluations > FC_MOST_EVALUATIONS) {
@@ -463,15 +465,14 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     return true;
 }
 
-FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                            FcStepResult* end) {
+FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end) {
     const double f = scene->drive.vibration.f;
     if (fc_scene_is_loose(scene)) {
         fc_loose_step(end);
         return (FcVector){0.0, 0.0};
     }
-    Walk walk = walk_from(law, scene, options, end);
-    if (law.is_bounded) {
+    Walk walk = walk_from(scene, options, end);
+    if (walk.is_bounded) {
         walk_to_repetition(&walk, HUGE_VAL);
         const double cycle = walk.done - walk.met_at;
         if (walk.met_at >= 0.0 && cycle > 0.0) {

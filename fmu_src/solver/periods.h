@@ -20,13 +20,12 @@
 
 // The step [0, h], h [s] >= 0, from the bristle in *result. Adds its integrals to *result. Returns false,
 // with *message filled, if the periods or the evaluations are too many.
-bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
-                     FcStepResult* result, FcMessage* message);
+bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, double h, FcStepResult* result,
+                     FcMessage* message);
 
 // The limit of the bristle in *end after infinitely many periods of a vibrating scene with held inputs.
 // Returns the mean of F (solver.h) [N] over a period of that state, or over the periods that repeat. Adds its
 // evaluations to end->evaluations.
-FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                            FcStepResult* end);
+FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end);
 
 #endif

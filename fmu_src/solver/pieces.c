@@ -6,6 +6,7 @@
 
 #include "model/extremes.h"
 #include "model/regime.h"
+#include "solver/march.h"
 
 void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
     assert(whole >= 0.0);
@@ -75,7 +76,7 @@ static FcSolverOptions options_of_piece(const FcSolverOptions* options, const Fc
     return own;
 }
 
-void fc_take_pieces(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
+void fc_take_pieces(const FcScene* scene, const FcSolverOptions* options, double duration,
                     FcStepResult* total) {
     FcPieces pieces;
     fc_pieces_start(&pieces, scene, duration);
@@ -84,7 +85,7 @@ void fc_take_pieces(FcIntegration law, const FcScene* scene, const FcSolverOptio
             fc_loose_step(total);
         } else {
             const FcSolverOptions own = options_of_piece(options, &pieces);
-            law.step(pieces.scene, &own, pieces.h, total);
+            fc_march_step(pieces.scene, &own, pieces.h, total);
         }
     }
 }

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "solver/affine_map.h"
+#include "solver/solver.h"
 
 typedef struct {
     const FcScene* of;
@@ -29,25 +29,8 @@ void fc_loose_step(FcStepResult* result);
 // energy that it loses is heat.
 void fc_take_onto_bound(const FcScene* scene, FcStepResult* result);
 
-// Takes *result over [0, duration] of the scene and adds the interval's integrals.
-typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
-                       FcStepResult* result);
-
-// The map of [0, duration] that holds for any start of the size of `start` [m] from which no bound is met; in the
-// plane with that of delta_y in *across, which is NULL along a line. Adds its evaluations to *evaluations.
-typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
-                           double start, FcMap* across, double* evaluations);
-
-// The integration of a law.
-typedef struct {
-    FcStep step;
-    FcFreeMap free_map;
-    bool is_bounded; // the bristle may meet a bound
-    bool is_planar;
-} FcIntegration;
-
 // Takes *total over an interval of at most a period, piece by piece.
-void fc_take_pieces(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
+void fc_take_pieces(const FcScene* scene, const FcSolverOptions* options, double duration,
                     FcStepResult* total);
 
 #endif
