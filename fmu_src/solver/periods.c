@@ -39,11 +39,6 @@ enum { MOST_MEETINGS = 1000 };
 // little in each period turns slowly. Chosen empirically: half of it left a found scene 3e-5 of the force away,
 // twice of it costs twice the time of a chaotic motion.
 enum { LONGER_IF_DRIFTING = 4 };
-// The number of those without a step of Newton in the plane, with static friction. A step may lead to
-// another cycle, so a cycle must be near. Chosen empirically: a quarter of it led a found scene to another
-// cycle, twice of it left one unsettled.
-enum { ALONE = 250 };
-
 // Whole periods of a bounded bristle with its inputs held.
 typedef struct {
     const FcScene* scene;
@@ -238,47 +233,14 @@ static bool repeats(Walk* walk) {
 // 143 drawn scenes settles elsewhere, at half of it errors grow.
 static const double MOST_OF_NEWTON = 1.0;
 
-// The largest change of what a cycle of periods moves the deflection by, over that. Derived: a cycle that forgets
-// more of its start repeats in MOST_MEETINGS - ALONE periods, to SAME_END LEAST_PART. Twice of it takes other
-// motions for cycles.
-static const double SAME_WAY = 0.05;
-
-// A period that met its bound: the end of the one before [m], and the derivatives of its own end by its start.
-typedef struct {
-    FcVector from, by_start[2];
-} Met;
-
-// The number of the last periods that move the deflection as those before them did; 0 if there is none.
-static int last_cycle(const Met* met, int count, const FcStepResult* end) {
-    for (int n = 1; 2 * n <= count; n++) {
-        const FcVector a = met[count - 2 * n].from;
-        const FcVector b = met[count - n].from;
-        const FcVector c = {end->delta, end->delta_y};
-        if (hypot(c.x - 2.0 * b.x + a.x, c.y - 2.0 * b.y + a.y) < SAME_WAY * hypot(c.x - b.x, c.y - b.y)) {
-            return n;
-        }
-    }
-    return 0;
-}
-
-// In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that
-// of periods that repeat, by a step of Newton over n of them. They must move by less than *least [m], as those
-// before the last step did: at a kink steps may lead to and fro.
-static bool take_newton_step(const FcScene* scene, const Met* met, int n, double* least,
-                             FcStepResult* total) {
-    const FcVector moved = {total->delta - met->from.x, total->delta_y - met->from.y};
-    FcVector x = {1.0, 0.0}; // derivatives of the end by the start
-    FcVector y = {0.0, 1.0};
-    for (int i = 0; i < n; i++) {
-        const FcVector* by = met[i].by_start;
-        x = (FcVector){by[0].x * x.x + by[1].x * x.y, by[0].y * x.x + by[1].y * x.y};
-        y = (FcVector){by[0].x * y.x + by[1].x * y.y, by[0].y * y.x + by[1].y * y.y};
-        if (!(hypot(x.x, x.y) + hypot(y.x, y.y) < 1e100)) { // chaos
-            return false;
-        }
-    }
+// In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that of a
+// period that repeats, by a step of Newton; the last period began at `from` [m].
+static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* total) {
+    const FcVector moved = {total->delta - from.x, total->delta_y - from.y};
+    const FcVector x = total->by_start[0]; // derivatives of the end by the start
+    const FcVector y = total->by_start[1];
     const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
-    if (hypot(moved.x, moved.y) >= *least || all == 0.0) {
+    if (!(hypot(x.x, x.y) + hypot(y.x, y.y) < 1e100) || all == 0.0) {
         return false;
     }
     const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
@@ -287,11 +249,10 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
     if (!isfinite(length)) {
         return false;
     }
-    *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
     const double most = MOST_OF_NEWTON * size_of(total);
     const double part = length > most ? most / length : 1.0;
-    const FcBristle reached = fc_reach(scene, (FcBristle){.delta = met->from.x + part * start.x,
-                                                          .delta_y = met->from.y + part * start.y,
+    const FcBristle reached = fc_reach(scene, (FcBristle){.delta = from.x + part * start.x,
+                                                          .delta_y = from.y + part * start.y,
                                                           .slips = total->slips});
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
@@ -312,11 +273,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
     walk->met_at = -1.0;
     walk->least.delta = INFINITY;
     int meetings = 0;
-    const bool has_cycles = fc_has_static_friction(walk->scene->friction);
-    Met met[MOST_MEETINGS / 2]; // since the last step of Newton
-    int count = 0;
-    FcVector from = {total->delta, total->delta_y};
-    double least = INFINITY;
+    // With static friction a step of Newton may lead from one cycle to another.
+    const bool may_step = walk->is_planar && isinf(periods) && !fc_has_static_friction(walk->scene->friction);
     double keep = 1.0;                    // the number of the next meeting that is kept
     FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
     const int most = (walk->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
@@ -334,9 +292,6 @@ static void walk_to_repetition(Walk* walk, double periods) {
         const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
         if (n == 0.0) { // it has met its bound, or will in the next period
             meetings++;
-            if (count < MOST_MEETINGS / 2) {
-                met[count++] = (Met){from, {total->by_start[0], total->by_start[1]}};
-            }
             if (!was_free && (isinf(walk->least.delta) || size_of(total) < fc_size(walk->least))) {
                 walk->least = fc_bristle_of(total);
             }
@@ -355,15 +310,11 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
-            } else if (walk->is_planar && isinf(periods) && !was_free &&
-                       meetings < MOST_MEETINGS / 2) { // the mean over the last third must be one
-                const int cycle = !has_cycles ? 1 : meetings > ALONE ? last_cycle(met, count, total) : 0;
-                if (cycle > 0 && take_newton_step(walk->scene, &met[count - cycle], cycle, &least, total)) {
-                    walk->met_at = -1.0; // periods repeat only if no step lies between them
-                    count = 0;
-                }
+            } else if (may_step && !was_free &&
+                       meetings < MOST_MEETINGS / 2 && // the mean over the last third must be one
+                       take_newton_step(walk->scene, (FcVector){before.delta, before.delta_y}, total)) {
+                walk->met_at = -1.0; // periods repeat only if no step lies between them
             }
-            from = (FcVector){total->delta, total->delta_y};
             continue;
         }
         if (isinf(n)) {
