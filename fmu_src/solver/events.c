@@ -61,40 +61,21 @@ static FcVector direction_of(const FcCrossing* crossing) {
 
 // ---- the begin and the end of a slip ----
 
-// A bristle that deviates meets its bound `held` [m] earlier by a time, drops there, and moves on for that time.
-static void drop_derivatives(FcCrossing* crossing, FcVector V, FcVector n, const FcPlaneBound* kinetic,
-                             double held, double push) {
-    const double V_n = fc_product(n, V);
-    const double V_t = fc_across(n, V);
-    for (int k = 0; k < 2; k++) {
-        FcVector* by = &crossing->by_start[k];
-        const double earlier = fc_product(n, *by) / push; // s
-        const double along = fc_across(n, *by);
-        const double turns = kinetic->D / held * (along - V_t * earlier) + V_t * earlier;
-        const double rises = (V_n - kinetic->rate) * earlier;
-        *by = (FcVector){rises * n.x - turns * n.y, rises * n.y + turns * n.x};
-    }
-}
-
 bool fc_begin_slip(FcCrossing* crossing, bool surely) {
     const FcPlane* plane = crossing->plane;
     const double t = crossing->at.t;
     const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
     const FcPlaneBound held = fc_plane_bound(plane, &at, crossing->slips, t, phase);
-    const FcPlaneBound kinetic = fc_plane_bound(plane, &at, 1, t, phase);
     const FcVector n = direction_of(crossing);
     const double push = fc_plane_push(plane, &at, &held, n);
     if (!surely && !(push > ROUNDING_OF_PUSH * fc_largest_push(crossing))) {
         return false;
     }
-    if (!plane->on_line && push > 0.0) {
-        drop_derivatives(crossing, at.V, n, &kinetic, held.D, push);
-    }
     // The energy that it loses is heat, also that of its small excess over the bound.
     const FcVector delta = fc_crossing_delta(crossing);
     const double size = hypot(delta.x, delta.y);
-    const double D = kinetic.D;
+    const double D = fc_plane_radius(plane, &at, 1);
     crossing->heat += 0.5 * at.sigma * (size - D) * (size + D);
     crossing->drag += (D - size) * fc_product(n, at.V);
     fc_set_delta(crossing, (FcVector){D * n.x, D * n.y});
