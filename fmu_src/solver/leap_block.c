@@ -21,11 +21,10 @@ static const double MOST_PART = 0.7;
 // seldom small by chance. Half of it costs points; three times of it let a work miss by 1.04 tolerances.
 static const double MOST_BEFORE = 10.0;
 
-// MOST_PARTS: the number of parts of a block, or up to twice as many, between whose ends the bound is taken as
-// linear. MOST_CHECKS: the number of parts without room in which a free bristle is followed through a period,
-// or up to two more. Chosen empirically: a bristle often comes near its bound in a few periods. Half of them
-// may miss a meeting, twice as many cost evaluations.
-enum { MOST_PARTS = 64, MOST_CHECKS = 8 };
+// The number of parts of a block, or up to twice as many, between whose ends the bound is taken as linear; in each the
+// free bristle with the least room is followed. Chosen empirically: half of them may miss a meeting, twice as many cost
+// evaluations.
+enum { MOST_PARTS = 64 };
 // The room over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
 // it changes by a factor of up to 10 in the block.
 static const double NO_ROOM = 1e-3;
@@ -465,12 +464,10 @@ static bool meets_while_stuck(const Block* block, const Place* without_room, int
     return false;
 }
 
-// Whether a bristle that relaxes would meet its bound in some of the places in which it has no room by estimate.
-static bool meets_in_some(const Block* block, const Place* without_room, int places, int nearest) {
-    const int each = 1 + places / MOST_CHECKS;
+// Whether a bristle that relaxes would meet its bound in one of the places in which it has no room by estimate.
+static bool meets_in_some(const Block* block, const Place* without_room, int places) {
     for (int i = 0; i < places; i++) {
-        const bool is_checked = i % each == 0 || i == nearest || i == places - 1;
-        if (is_checked && meets(block, &without_room[i])) {
+        if (meets(block, &without_room[i])) {
             return true;
         }
     }
@@ -495,7 +492,6 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = of->count};
     Place without_room[2 * MOST_PARTS + 1]; // the period with the least room of each part
     int places = 0;
-    int nearest = 0;
     Place least = {.room = HUGE_VAL};
     for (double k = 0.0; k < of->count; k += 1.0) {
         if (is_watched) {
@@ -504,9 +500,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
             least = at.room <= least.room ? at : least;
             if (fmod(k + 1.0, rooms.stride) == 0.0 || k == of->count - 1.0) {
                 if (least.room <= 0.0) {
-                    without_room[places] = least;
-                    nearest = places == 0 || least.room < without_room[nearest].room ? places : nearest;
-                    places++;
+                    without_room[places++] = least;
                 }
                 least.room = HUGE_VAL;
             }
@@ -519,7 +513,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     }
     const bool sticks = of->scene->friction->model == FC_ELASTIC_PLASTIC;
     if (places > 0 && (sticks ? meets_while_stuck(block, without_room, places)
-                              : meets_in_some(block, without_room, places, nearest))) {
+                              : meets_in_some(block, without_room, places))) {
         return false;
     }
     result.on_bound = false;
