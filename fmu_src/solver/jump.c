@@ -31,9 +31,10 @@ typedef struct {
     double d, V, V_y, E;                             // by which they change
     double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
     double along, along_change;                      // m2/s, V times delta, and by which it changes
-    double start;                                    // m, |delta| at the begin
-    bool pushed;                                     // after the ramp, if the bristle slips
-    bool slips;                                      // the bristle, which chooses the bound
+    double start, delta, heat; // m, m and J: |delta| at the begin and now, and the heat so far
+    double sought;             // m, the D that above_bound seeks
+    bool pushed;               // after the ramp, if the bristle slips
+    bool slips;                // the bristle, which chooses the bound
 } Ramp;
 
 typedef struct {
@@ -113,45 +114,37 @@ static Ramp ramp_between(const FcScene* scene, const FcPast* past, const FcPast*
     ramp.log_sigma = log(start.sigma / past->sigma);
     ramp.along = past->V * bristle->delta + past->V_y * bristle->delta_y;
     ramp.along_change = ramp.V * bristle->delta + ramp.V_y * bristle->delta_y;
-    ramp.start = fc_size(*bristle);
+    ramp.start = ramp.delta = fc_size(*bristle);
     ramp.slips = bristle->slips != 0;
     return ramp;
 }
 
-typedef struct {
-    const Ramp* ramp;
-    double delta; // m
-} AboveBound;
-
 static double above_bound(void* context, double s) {
-    const AboveBound* of = context;
-    return of->delta - at_place(of->ramp, s).D;
+    const Ramp* ramp = context;
+    return ramp->sought - at_place(ramp, s).D;
 }
 
-static double bound_rate(void* context, double s) {
-    const AboveBound* of = context;
-    return at_place(of->ramp, s).rate;
-}
+static double bound_rate(void* ramp, double s) { return at_place(ramp, s).rate; }
 
 // Between two places over which D falls, or rises. The bristle at |delta| follows D once D is lower, with the
 // heat g |dD|.
-static double follow(const Ramp* ramp, double a, double b, double delta, double* heat) {
-    assert(a <= b && !(delta < 0.0));
+static void follow(Ramp* ramp, double a, double b) {
+    assert(a <= b && !(ramp->delta < 0.0));
     const Place end = at_place(ramp, b);
-    if (!(end.D < delta)) {
-        return delta;
+    if (!(end.D < ramp->delta)) {
+        return;
     }
-    AboveBound of = {ramp, delta};
     double none = 0.0;
-    const double at_a = above_bound(&of, a);
+    ramp->sought = ramp->delta;
+    const double at_a = above_bound(ramp, a);
     const double from =
-        at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, 0.0, &none) : a;
+        at_a < 0.0 ? fc_root_between(above_bound, ramp, a, at_a, b, ramp->delta - end.D, 0.0, 0.0, &none) : a;
     for (int i = 0; i < FC_STAGES; i++) {
         const Place at = at_place(ramp, from + (0.5 + FC_RADAU.node[i]) * (b - from));
         // With its sign, so that a shallow rise that is not seen cancels its fall.
-        *heat -= FC_RADAU.weight[i] * (b - from) * at.limit * at.rate;
+        ramp->heat -= FC_RADAU.weight[i] * (b - from) * at.limit * at.rate;
     }
-    return end.D;
+    ramp->delta = end.D;
 }
 
 // The largest changes over a step of the ramp: of the logarithms of D, g and sigma together, and of V over
@@ -194,27 +187,27 @@ static double step_from(const Ramp* ramp, double s) {
 }
 
 // The next place to stop at after s, or the one before it at which D turns.
-static double next_stop(const Ramp* ramp, double s, double step) {
+static double next_stop(Ramp* ramp, double s, double step) {
     const double next = next_place(ramp, s, step);
-    AboveBound of = {ramp, 0.0};
-    const double rate = bound_rate(&of, s);
-    const double rate_next = bound_rate(&of, next);
+    const double rate = bound_rate(ramp, s);
+    const double rate_next = bound_rate(ramp, next);
     if (!(rate * rate_next < 0.0)) {
         return next;
     }
     double none = 0.0;
-    const double turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
+    const double turn = fc_root_between(bound_rate, ramp, s, rate, next, rate_next, 0.0, 0.0, &none);
     return turn > s + 1e-9 ? turn : next;
 }
 
 // Whether a bristle that has broken away sticks between two stops: neither V nor the motion after the ramp
 // pushes it outward, and it lies inside its bound, or its bound rises, or V has reversed before it slipped. A
 // bristle that is pushed does not stick, so that held steps come to the ramp that they sample.
-static bool sticks_between(const Ramp* ramp, double s, double next, double delta) {
+static bool sticks_between(const Ramp* ramp, double s, double next) {
     if (!drops(ramp) || ramp->pushed || ramp->along + 0.5 * (s + next) * ramp->along_change > 0.0) {
         return false;
     }
     const double D = at_place(ramp, s).D;
+    const double delta = ramp->delta;
     const bool has_slipped = delta < (1.0 - FC_ROUNDING_OF_BOUND) * ramp->start;
     return (ramp->along > 0.0 && !has_slipped) || delta < (1.0 - FC_INSIDE_BOUND) * D ||
            at_place(ramp, next).D > (1.0 + FC_INSIDE_BOUND) * D;
@@ -222,21 +215,21 @@ static bool sticks_between(const Ramp* ramp, double s, double next, double delta
 
 // Whether the ramp raises the bound of a slipping bristle that has not reached it since an earlier jump. The
 // steps then sample a bound that rises faster than the bristle moves, so that it sticks.
-static bool lags_behind(const Ramp* ramp, double delta) {
+static bool lags_behind(const Ramp* ramp) {
     const double D = at_place(ramp, 0.0).D;
-    return delta < (1.0 - FC_INSIDE_BOUND) * D && at_place(ramp, 1.0).D > (1.0 + FC_INSIDE_BOUND) * D;
+    return ramp->start < (1.0 - FC_INSIDE_BOUND) * D && at_place(ramp, 1.0).D > (1.0 + FC_INSIDE_BOUND) * D;
 }
 
 // Takes a bristle that slips to the end of the ramp or to the place at which it sticks, which is returned.
-static double slip_from(Ramp* ramp, double s, double* delta, double* heat) {
+static double slip_from(Ramp* ramp, double s) {
     const double step = step_from(ramp, s);
     while (s < 1.0) {
         const double next = next_stop(ramp, s, step);
-        if (sticks_between(ramp, s, next, *delta)) {
+        if (sticks_between(ramp, s, next)) {
             ramp->slips = false;
             return s;
         }
-        *delta = follow(ramp, s, next, *delta, heat);
+        follow(ramp, s, next);
         s = next;
     }
     return s;
@@ -244,16 +237,16 @@ static double slip_from(Ramp* ramp, double s, double* delta, double* heat) {
 
 // Takes a bristle that sticks to the end of the ramp or to the place at which its static bound falls below |delta|
 // and it breaks away, which is returned.
-static double stick_from(Ramp* ramp, double s, double* delta, double* heat) {
-    AboveBound of = {ramp, (1.0 - FC_ROUNDING_OF_BOUND) * *delta};
+static double stick_from(Ramp* ramp, double s) {
     double none = 0.0;
-    double at_s = above_bound(&of, s);
+    ramp->sought = (1.0 - FC_ROUNDING_OF_BOUND) * ramp->delta;
+    double at_s = above_bound(ramp, s);
     const double step = step_from(ramp, s);
     while (s < 1.0 && at_s <= 0.0) {
         const double next = next_stop(ramp, s, step);
-        const double at_next = above_bound(&of, next);
+        const double at_next = above_bound(ramp, next);
         if (at_next > 0.0) {
-            s = at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, 0.0, &none) : s;
+            s = at_s < 0.0 ? fc_root_between(above_bound, ramp, s, at_s, next, at_next, 0.0, 0.0, &none) : s;
             break;
         }
         s = next;
@@ -262,8 +255,8 @@ static double stick_from(Ramp* ramp, double s, double* delta, double* heat) {
     if (s < 1.0) {
         ramp->slips = true;
         const Place at = at_place(ramp, s);
-        *heat += 0.5 * at.sigma * (*delta - at.D) * (*delta + at.D);
-        *delta = at.D;
+        ramp->heat += 0.5 * at.sigma * (ramp->delta - at.D) * (ramp->delta + at.D);
+        ramp->delta = at.D;
     }
     return s;
 }
@@ -312,19 +305,18 @@ FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, FcBristle 
         if (past->ratio == 1.0) { // then no state tells whether it slips
             ramp.slips = ramp.along > 0.0 && delta >= (1.0 - FC_INSIDE_BOUND) * at_place(&ramp, 0.0).D;
         }
-        ramp.slips = ramp.slips && !lags_behind(&ramp, delta);
+        ramp.slips = ramp.slips && !lags_behind(&ramp);
     }
-    double reached = delta;
     for (double s = 0.0; s < 1.0;) {
-        s = drops(&ramp) && !ramp.slips ? stick_from(&ramp, s, &reached, heat)
-                                        : slip_from(&ramp, s, &reached, heat);
+        s = drops(&ramp) && !ramp.slips ? stick_from(&ramp, s) : slip_from(&ramp, s);
     }
+    *heat = ramp.heat;
     bristle.slips = ramp.slips && fc_has_static_friction(scene->friction) ? slips : 0;
     if (bristle.delta_y == 0.0) {
-        bristle.delta = side * reached;
+        bristle.delta = side * ramp.delta;
     } else {
-        bristle.delta *= reached / delta;
-        bristle.delta_y *= reached / delta;
+        bristle.delta *= ramp.delta / delta;
+        bristle.delta_y *= ramp.delta / delta;
     }
     return fc_reach(scene, bristle);
 }
