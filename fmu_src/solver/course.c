@@ -115,22 +115,19 @@ typedef struct {
     double length, beyond; // s
     double edge;           // s, the distance at which the curve has ended; infinite if no part is cut
     double narrow, narrow_beyond;
-    double most[4]; // as in FcPart
+    FcMost most;
 } Center;
 
 static const Center NONE = {
     .length = INFINITY, .beyond = INFINITY, .edge = INFINITY, .narrow = 1.0, .narrow_beyond = 1.0};
 
-// |V| at a time, and the norms of its derivatives over n!.
-static void find_most(const FcPlane* plane, double t, double most[4]) {
+static FcMost most_at(const FcPlane* plane, double t) {
     const FcDrive* drive = &plane->scene->drive;
     const FcPhase phase = fc_drive_phase(drive, t);
     const FcVelocity x = fc_drive_velocity_at_phase(drive, t, phase);
     const FcVelocity y = plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
-    most[0] = hypot(x.V, y.V);
-    most[1] = hypot(x.rate, y.rate);
-    most[2] = hypot(x.curvature, y.curvature) / 2.0;
-    most[3] = hypot(x.third, y.third) / 6.0;
+    return (FcMost){{hypot(x.V, y.V), hypot(x.rate, y.rate), hypot(x.curvature, y.curvature) / 2.0,
+                     hypot(x.third, y.third) / 6.0}};
 }
 
 // The root of a x^n = change; infinite if a is 0.
@@ -143,32 +140,32 @@ static double time_of_power(double a, int n, double change) {
 }
 
 // The time [s] in which V moves by change [m/s].
-static double time_of_change(const double most[4], double change) {
+static double time_of_change(const FcMost* most, double change) {
     double least = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        least = fc_least(least, time_of_power(most[n], n, change));
+        least = fc_least(least, time_of_power(most->of[n], n, change));
     }
     return least;
 }
 
 // The order with which V passes a center, seen over x [s].
-static int order_at(const double most[4], double x) {
-    const double by[] = {most[1], most[2] * x, most[3] * x * x};
+static int order_at(const FcMost* most, double x) {
+    const double by[] = {most->of[1], most->of[2] * x, most->of[3] * x * x};
     return by[0] >= by[1] && by[0] >= by[2] ? 1 : by[1] >= by[2] ? 2 : 3;
 }
 
 // L without a curve: the larger of eps and the layer, for the order for which it is least.
-static double length_of_layer(const FcPlane* plane, const double most[4], double path, double of_layer,
+static double length_of_layer(const FcPlane* plane, const FcMost* most, double path, double of_layer,
                               double h, double* eps) {
     const bool relaxes = plane->scene->friction->model != FC_COULOMB &&
                          (!plane->on_line || plane->scene->friction->model != FC_ELASTIC_PLASTIC);
-    *eps = time_of_change(most, most[0]);
+    *eps = time_of_change(most, most->of[0]);
     if (!relaxes) {
         return plane->on_line ? INFINITY : *eps;
     }
     double layer = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        layer = fc_least(layer, time_of_power(most[n], n + 1, (n + 1) * path));
+        layer = fc_least(layer, time_of_power(most->of[n], n + 1, (n + 1) * path));
     }
     return fc_most(*eps, of_layer * fc_least(layer, h));
 }
@@ -179,29 +176,29 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     const FcScene* scene = plane->scene;
     Center of = NONE;
     of.time = time;
-    find_most(plane, seen_from, of.most);
+    of.most = most_at(plane, seen_from);
     if (is_reversal) {
-        of.most[0] = 0.0;
+        of.most.of[0] = 0.0;
     }
     const double inside = fc_least(fc_most(time, 0.0), h);
     const FcPlaneCoefficients near =
         fc_plane_coefficients(plane, inside, fc_drive_phase(&scene->drive, inside));
     double eps;
-    of.length = length_of_layer(plane, of.most, near.static_limit / near.sigma,
+    of.length = length_of_layer(plane, &of.most, near.static_limit / near.sigma,
                                 plane->on_line ? 1.0 : sqrt(tolerance), h, &eps);
     of.beyond = of.length;
     // A Stribeck curve, if V comes into it.
     const double V_S = scene->friction->V_S;
-    const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.most[0] < FC_END_OF_CURVE * V_S;
+    const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.most.of[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
-        const double of_curve = fc_most(time_of_change(of.most, V_S), plane->on_line ? 0.0 : eps);
+        const double of_curve = fc_most(time_of_change(&of.most, V_S), plane->on_line ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
-            of.edge = time_of_change(of.most, FC_END_OF_CURVE * V_S);
+            of.edge = time_of_change(&of.most, FC_END_OF_CURVE * V_S);
         }
         of.length = fc_least(of.length, of_curve);
     }
     if (isfinite(of.length)) { // a transient goes as e^(-x^(n + 1)), the curve as e^(-x^2n)
-        const int n = order_at(of.most, of.length);
+        const int n = order_at(&of.most, of.length);
         of.narrow_beyond = 2.0 / (n + 1.0);
         of.narrow = has_curve ? 1.0 / n : of.narrow_beyond;
         const double least = 0x1p-40 * fc_most(h, fabs(time)); // rounding of the times
@@ -260,15 +257,12 @@ static const double SAME_TIME = 0x1p-46;
 
 static FcPart part_of(double start, double end, const Center* center, bool is_beyond, int side) {
     const double length = is_beyond ? center->beyond : center->length;
-    FcPart part = {.start = start,
-                   .end = end,
-                   .in = {isfinite(length) ? center->time : 0.0, length},
-                   .side = side,
-                   .narrow = is_beyond ? center->narrow_beyond : center->narrow};
-    for (int n = 0; n < 4; n++) {
-        part.most[n] = center->most[n];
-    }
-    return part;
+    return (FcPart){.start = start,
+                    .end = end,
+                    .in = {isfinite(length) ? center->time : 0.0, length},
+                    .side = side,
+                    .narrow = is_beyond ? center->narrow_beyond : center->narrow,
+                    .most = center->most};
 }
 
 // A part on one side of its center, in two if a Stribeck curve ends in it.

@@ -27,13 +27,18 @@ double fc_straight_time(const FcStraight* in, double u); // s
 double fc_straight_pace(const FcStraight* in, double u); // s, dt/du
 double fc_straight_place(const FcStraight* in, double t);
 
+// At a center |V|, |V'|, |V''| / 2 and |V'''| / 6: bounds of |V| beside it.
+typedef struct {
+    double of[4];
+} FcMost;
+
 // A part of the interval, on one side of the center of its variable.
 typedef struct {
     double start, end; // s
     FcStraight in;
-    int side;       // along a line, the sign of V; 0 in the plane
-    double narrow;  // the strip of u in which the force is analytic, over that of a reversal at which V' != 0
-    double most[4]; // |V| at the center, |V'|, |V''| / 2 and |V'''| / 6: bounds of |V| in the part
+    int side;      // along a line, the sign of V; 0 in the plane
+    double narrow; // the strip of u in which the force is analytic, over that of a reversal at which V' != 0
+    FcMost most;
 } FcPart;
 
 double fc_part_time(const FcPart* part, double u); // s, within the part in spite of rounding
@@ -41,7 +46,7 @@ double fc_part_time(const FcPart* part, double u); // s, within the part in spit
 // An upper bound of |V| [m/s] at the distance x [s] from the center.
 static inline double fc_part_speed(const FcPart* part, double x) {
     x = fabs(x);
-    return part->most[0] + x * (part->most[1] + x * (part->most[2] + x * part->most[3]));
+    return part->most.of[0] + x * (part->most.of[1] + x * (part->most.of[2] + x * part->most.of[3]));
 }
 
 // Room for two centers a period over less than three periods, with up to four parts each.
