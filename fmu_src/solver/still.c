@@ -60,12 +60,9 @@ typedef struct {
     int side;
 } WayToBound;
 
-static FcRootFunction way_to_bound(void* context, double t) {
+static double past_bound(void* context, double t) {
     const WayToBound* of = context;
-    const FcVelocity at = fc_drive_velocity(of->drive, t);
-    return (FcRootFunction){.value = of->side * fc_drive_displacement(of->drive, of->from, t) - of->way,
-                            .rate = of->side * at.V,
-                            .curvature = of->side * at.rate};
+    return of->side * fc_drive_displacement(of->drive, of->from, t) - of->way;
 }
 
 // Whether a stuck bristle meets its bound in the part; sets *end to when, and *way [m] to how far it is.
@@ -91,8 +88,8 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
         return true;
     }
     WayToBound of = {drive, t, *way, side};
-    *end = fc_root(way_to_bound, &of, t, way_to_bound(&of, t), *end, way_to_bound(&of, *end), 1e-5, INFINITY,
-                   &crossing->evaluations);
+    *end = fc_root_between(past_bound, &of, t, -*way, *end, moves - *way, 1e-10 * D, 0.0,
+                           &crossing->evaluations);
     return true;
 }
 
