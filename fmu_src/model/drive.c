@@ -320,18 +320,7 @@ static double angle_ahead(double now, double target, double least) {
     return ahead > least ? ahead : ahead + FC_TWO_PI;
 }
 
-static FcRootFunction V_of_root(void* drive, double t) {
-    const FcVelocity at = fc_drive_velocity(drive, t);
-    return (FcRootFunction){.value = at.V, .rate = at.rate, .curvature = at.curvature};
-}
-
-// Root of V in the bracket [t0, t1], on which V is monotone, to rounding.
-static double root_of_V(const FcDrive* drive, double t0, double t1) {
-    FcDrive at = *drive;
-    double evaluations = 0.0;
-    return fc_root(V_of_root, &at, t0, V_of_root(&at, t0), t1, V_of_root(&at, t1), 1e-6, INFINITY,
-                   &evaluations);
-}
+static double V_at(void* drive, double t) { return fc_drive_V(drive, t); }
 
 // Whether |V| dips below half of |V| + V_1 at t. A shallower dip is smooth enough to be stepped over.
 static bool is_dip(const FcDrive* drive, double t) {
@@ -401,7 +390,10 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
         }
         const double V_to = fc_drive_V(drive, to);
         if ((V_from < 0.0) != (V_to < 0.0)) {
-            return event_at(root_of_V(drive, from, to), true);
+            double evaluations = 0.0;
+            FcDrive at = *drive;
+            const double root = fc_root_between(V_at, &at, from, V_from, to, V_to, 0.0, 0.0, &evaluations);
+            return event_at(root, true);
         }
         if (!stops_at_end && is_dip(drive, to)) {
             return event_at(to, false);

@@ -18,62 +18,24 @@ static double step_to_root(FcRootFunction at) {
     return -2.0 * at.value / (at.rate + slope);
 }
 
-// The part of the bracket up to which the parabola at a is used. Half or twice of it changes the evaluations,
-// not the accuracy.
-static const double PARABOLA_REACH = 0.25;
-
-// The step from a to the root of the parabola there if that root is near. Else the step to the root of the
-// cubic t(f) through both ends, if the slopes agree with the change.
-static double first_step(double duration, FcRootFunction at_a, FcRootFunction at_b) {
-    const double change = at_b.value - at_a.value;
-    const double nearer = fabs(step_to_root(at_a));
-    if (nearer < PARABOLA_REACH * duration || !(at_a.rate * change > 0.0 && at_b.rate * change > 0.0)) {
-        return nearer;
-    }
-    const double s = -at_a.value / change;
-    const double part = s * (1.0 - s);
-    return duration * s * s * (3.0 - 2.0 * s) + change * part * ((1.0 - s) / at_a.rate - s / at_b.rate);
-}
-
-double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
-               FcRootFunction at_b, double last_step, double least_area, double* evaluations) {
-    assert(a <= b && last_step >= 0.0 && least_area >= 0.0);
+double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b, double last_step,
+               double* evaluations) {
+    assert(a <= b && last_step >= 0.0);
     const double start = a;
-    const bool starts_negative = at_a.value < 0.0;
     FcRootFunction at = at_a;
     double t = a;
-    double step = first_step(b - a, at_a, at_b);
+    double longest = b - a;
     for (int i = 0; i < MOST_ROOT_STEPS && at.value != 0.0; i++) {
-        double next = t + step;
-        double longest = 0.5 * fabs(step);
-        const bool bisects = !(next >= a && next <= b);
-        if (bisects) {
-            next = a + 0.5 * (b - a);
-            longest = b - a;
-        }
-        step = next - t;
-        t = next;
-        // A small step to the parabola's root is smaller than f's own. The middle of a small bracket may be
-        // as far from it.
-        const bool is_near =
-            i > 0 && !bisects && fabs(step) <= last_step * (t - start) && fabs(step * at.value) <= least_area;
-        if (is_near) {
-            return t;
+        const double step = step_to_root(at);
+        const bool bisects = !(fabs(step) <= longest && t + step >= a && t + step <= b);
+        longest = bisects ? b - a : 0.5 * fabs(step);
+        t = bisects ? a + 0.5 * (b - a) : t + step;
+        if (t == a || t == b || (i > 0 && !bisects && fabs(step) <= last_step * (t - start))) {
+            break;
         }
         at = f(context, t);
         *evaluations += 1.0;
-        if (t == a || t == b) {
-            return t;
-        }
-        if ((at.value < 0.0) == starts_negative) {
-            a = t;
-        } else {
-            b = t;
-        }
-        step = step_to_root(at);
-        if (!(fabs(step) <= longest)) {
-            step = INFINITY; // bisect
-        }
+        *((at.value < 0.0) == (at_a.value < 0.0) ? &a : &b) = t;
     }
     return t;
 }

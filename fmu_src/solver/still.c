@@ -103,8 +103,7 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
         return true;
     }
     WayToBound of = {drive, t, *way, side};
-    *end = fc_root(way_to_bound, &of, t, way_to_bound(&of, t), *end, way_to_bound(&of, *end), 1e-5, INFINITY,
-                   &crossing->evaluations);
+    *end = fc_root(way_to_bound, &of, t, way_to_bound(&of, t), *end, 1e-5, &crossing->evaluations);
     return true;
 }
 
