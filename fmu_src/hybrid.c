@@ -92,18 +92,18 @@ static void see_inputs(FcFrictionContact* contact) {
 // The contact with its present inputs and their estimated speeds, and its bristle's bound.
 typedef struct {
     FcScene scene;
-    FcScene bound; // points to bound_law
-    FcFriction bound_law;
+    FcPlane plane; // points to scene
+    int slips;
     int side; // of the bound that ends its regime: 0 for either
 } View;
 
 static void look(FcFrictionContact* contact, View* view) {
-    const int slips = fc_friction_contact_bristle(contact).slips;
     double speed[FC_INPUT_COUNT];
     find_speeds(contact, speed);
     view->scene = fc_friction_contact_scene_moving(contact, speed);
-    view->bound = fc_scene_of_bound(&view->scene, slips, &view->bound_law);
-    view->side = slips != 0 ? slips : (int)regime_of(contact);
+    fc_plane_make(&view->plane, &view->scene);
+    view->slips = fc_friction_contact_bristle(contact).slips;
+    view->side = view->slips != 0 ? view->slips : (int)regime_of(contact);
 }
 
 static bool fail_rates(const FcScene* scene, const FcVariables* v, FcMessage* message) {
@@ -192,7 +192,7 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     View now;
     look(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
-    const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound_in_plane(&now.bound, 0.0).D;
+    const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound(&now.plane, now.slips, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const double size = fc_size(bristle);
     const double onto = size > 0.0 ? D / size : 0.0;
@@ -246,7 +246,7 @@ static void begin_regime(FcFrictionContact* contact) {
     double heat;
     FcBristle bristle =
         fc_jump(&now.scene, state->time, &state->past, fc_friction_contact_bristle(contact), &heat);
-    if (bristle.slips != 0 && !(fc_push_in_plane(&now.scene, bristle) > 0.0)) { // the event of a push of 0
+    if (bristle.slips != 0 && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.slips = 0;
     }
     move_to(contact, (FcVector){bristle.delta, bristle.delta_y}, heat);
@@ -325,7 +325,7 @@ static double first_turn(const View* view, int side, double start, double period
     if (!(start < end)) { // an input may be 0 at the start
         return end;
     }
-    FcPushed of = {&view->scene, &view->bound, side};
+    FcPushed of = {&view->plane, view->slips, {side, 0.0}};
     double evaluations = 0.0;
     double before = fc_push_at(&of, start);
     double t = start;
@@ -345,7 +345,7 @@ static double first_turn(const View* view, int side, double start, double period
 static bool turns_near(const View* view, int side, double delta, double t) {
     return view->scene.friction->model != FC_ELASTIC_PLASTIC ||
            side * (delta + fc_drive_displacement(&view->scene.drive, 0.0, t)) >
-               NEAR_THE_BOUND * fc_bound(&view->bound, t);
+               NEAR_THE_BOUND * fc_bound(&view->plane, view->slips, t).D;
 }
 
 // The time [s], at most `longest`, within which an input that falls does not come to 0.

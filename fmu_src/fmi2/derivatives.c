@@ -190,9 +190,9 @@ static double bound_rate_by(const FcFrictionContact* contact, bool hybrid, int s
     for (int k = 0; k < 5; k++) {
         FcFrictionContact moved = moved_by(contact, info, k * change);
         const FcScene scene = scene_of(&moved, hybrid);
-        FcFriction friction;
-        const FcScene bound = fc_scene_of_bound(&scene, slips, &friction);
-        sum += weight[k] * fc_bound_in_plane(&bound, 0.0).rate;
+        FcPlane plane;
+        fc_plane_make(&plane, &scene);
+        sum += weight[k] * fc_bound(&plane, slips, 0.0).rate;
     }
     return change != 0.0 ? sum / (12.0 * change) : 0.0;
 }

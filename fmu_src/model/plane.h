@@ -56,16 +56,26 @@ double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int 
 
 // The bound with its rate, and the rate of ln sigma.
 typedef struct {
+    double limit;          // N
     double D;              // m
     double rate;           // m/s
     double log_sigma_rate; // 1/s
 } FcPlaneBound;
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t);
+FcPlaneBound fc_bound(const FcPlane* plane, int slips, double t); // at a local time [s]
 
 // The push: the velocity [m/s] at which a bristle on its bound, in the direction n (|n| = 1), would leave the
 // bound outwards. The bristle slips while the push is positive.
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
                      FcVector n);
+
+// The push as a function of time, for fc_root_between: context is an FcPushed.
+typedef struct {
+    const FcPlane* plane;
+    int slips;
+    FcVector n;
+} FcPushed;
+double fc_push_at(void* context, double t);
 
 #endif
