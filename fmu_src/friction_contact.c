@@ -176,7 +176,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     }
     if (!isfinite(scene->at_E.area_0) || !isfinite(scene->at_E.load_0) ||
         !isfinite(scene->at_E.stiffness_0)) {
-        return fail_stiffness(message, drive->d.value, fc_drive_largest_E(drive, h));
+        return fail_stiffness(message, drive->d.value, fc_most(E, end));
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
     const bool stays_open = scene->is_open && !scene->floats;
@@ -188,7 +188,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         return fail_separation(scene, h, message);
     }
     if (!isfinite(fc_scene_largest_stiffness(scene, h))) {
-        return fail_stiffness(message, d, fc_drive_largest_E(drive, h));
+        return fail_stiffness(message, d, fc_most(E, end));
     }
     if (!isfinite(fc_scene_mean_limit(scene, 0.0)) || !isfinite(fc_scene_mean_limit(scene, h))) {
         return fc_message_set(

@@ -306,9 +306,9 @@ static double bound_acceleration(const FcScene* scene, FcRegime regime) {
     fc_plane_make(&plane, scene);
     const FcPlaneBound now = fc_bound(&plane, regime, 0.0);
     double pace = drive->omega + fabs(now.log_sigma_rate) + fabs(now.rate / now.D + now.log_sigma_rate) +
-                  fc_drive_E_growth(drive, 0.0);
+                  fabs(drive->E.rate) / drive->E.value;
     if (drive->load.rate != 0.0) {
-        pace += fc_drive_load_growth(drive, 0.0);
+        pace += fabs(drive->load.rate) / drive->load.value;
     }
     if (fc_has_static_friction(scene->friction)) {
         const double across = fabs(drive->V_y.rate) + drive->omega * drive->vibration.V_2;
@@ -328,16 +328,17 @@ static double bound_acceleration(const FcScene* scene, FcRegime regime) {
 
 FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
     const FcDrive* drive = &scene->drive;
+    const FcPhase phase = fc_drive_phase(drive, 0.0);
     const FcRegime regime = fc_regime(scene, bristle);
     const FcStateRates rates = fc_motion(scene, regime, bristle).rates;
     FcDirection in_time = {
-        .V = fc_drive_V_rate(drive, 0.0),
+        .V = fc_drive_velocity_at_phase(drive, 0.0, phase).rate,
         .d = drive->d.rate,
-        .swing = fc_drive_d_rate(drive, 0.0) - drive->d.rate,
+        .swing = fc_drive_d_rate_at_phase(drive, phase) - drive->d.rate,
         .E = drive->E.rate,
         .load = drive->load.rate,
         .delta = rates.delta,
-        .V_y = fc_drive_velocity_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)).rate,
+        .V_y = fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate,
         .delta_y = rates.delta_y,
     };
     if (regime != FC_FREE && scene->friction->sigma_1 != 0.0) {

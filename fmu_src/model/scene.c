@@ -4,9 +4,9 @@
 
 #include "model/extremes.h"
 
-// The mean separation [m] of the surfaces at the time t, with contact.input = Load.
-static double rest_separation(const FcScene* scene, const FcContactAtModulus* at_E, double t) {
-    return (log(at_E->load_0 / fc_drive_load(&scene->drive, t)) + scene->log_swell) / at_E->decay;
+// The mean separation [m] of the surfaces under a load, which is load_0 at d = 0.
+static double rest_separation(const FcScene* scene, double load_0, double load) {
+    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
 }
 
 static bool follows_load(const FcScene* scene) { return scene->contact->input == FC_CONTACT_LOAD; }
@@ -50,8 +50,9 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     }
     scene.is_open = !(drive->load.value > NOTHING);
     scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
-    scene.drive.d =
-        (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
+    const bool rests = !scene.floats && !scene.is_open;
+    scene.drive.d.value = rests ? rest_separation(&scene, at_E->load_0, drive->load.value) : 0.0;
+    scene.drive.d.rate = 0.0;
     return scene;
 }
 
@@ -126,7 +127,8 @@ FcScene fc_scene_from(const FcScene* scene, double t) {
 
 // The separation at t; driven is the drive's part.
 static double separation(const FcScene* scene, const FcContactAtModulus* at_E, double driven, double t) {
-    return scene->floats ? driven + rest_separation(scene, at_E, t) : driven;
+    return scene->floats ? driven + rest_separation(scene, at_E->load_0, fc_drive_load(&scene->drive, t))
+                         : driven;
 }
 
 static double d_at_phase(const FcScene* scene, double t, FcPhase at_t) {
@@ -235,30 +237,25 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
     return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
-// Bounds of the mean separation.
-static double smallest_rest(const FcScene* scene, double h) {
-    const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fc_least(scene->at_E.load_0, end.load_0);
-    const double load = fc_most(scene->drive.load.value, fc_drive_load(&scene->drive, h));
-    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
-}
-
-static double largest_rest(const FcScene* scene, double h) {
-    const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fc_most(scene->at_E.load_0, end.load_0);
-    const double load = fc_least(scene->drive.load.value, fc_drive_load(&scene->drive, h));
-    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
-}
-
 double fc_scene_smallest_d(const FcScene* scene, double h) {
     assert(h >= 0.0);
-    const double driven = fc_drive_smallest_d(&scene->drive, h);
-    return scene->floats ? driven + smallest_rest(scene, h) : driven;
+    const FcDrive* drive = &scene->drive;
+    double d = fc_input_least(drive->d, h) - drive->vibration.a_d;
+    if (scene->floats) {
+        d += rest_separation(scene, fc_least(scene->at_E.load_0, contact_at(scene, h).load_0),
+                             fc_most(drive->load.value, fc_drive_load(drive, h)));
+    }
+    return d;
 }
 
 static double largest_d(const FcScene* scene, double h) {
-    const double driven = fc_drive_largest_d(&scene->drive, h);
-    return scene->floats ? driven + largest_rest(scene, h) : driven;
+    const FcDrive* drive = &scene->drive;
+    double d = fc_input_most(drive->d, h) + drive->vibration.a_d;
+    if (scene->floats) {
+        d += rest_separation(scene, fc_most(scene->at_E.load_0, contact_at(scene, h).load_0),
+                             fc_least(drive->load.value, fc_drive_load(drive, h)));
+    }
+    return d;
 }
 
 double fc_scene_largest_stiffness(const FcScene* scene, double h) {
