@@ -106,15 +106,6 @@ static void look(FcFrictionContact* contact, View* view) {
     view->side = view->slips != 0 ? view->slips : (int)regime_of(contact);
 }
 
-static bool fail_rates(const FcScene* scene, const FcVariables* v, FcMessage* message) {
-    const FcFastest of = fc_fastest(&scene->drive);
-    return fc_message_set(
-        message,
-        "F_t, F_y or the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = "
-        "%.9g m/s with %s = %.9g m/s, delta = %.9g m, delta_y = %.9g m",
-        of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
-}
-
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
@@ -123,17 +114,10 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const FcContactResponse response = fc_scene_contact(&scene, 0.0);
     const FcMotion now = fc_motion(&scene, regime_of(contact), fc_friction_contact_bristle(contact));
-    if (!isfinite(now.force.x) || !isfinite(now.force.y) || !isfinite(now.rates.delta) ||
-        !isfinite(now.rates.delta_y) || !isfinite(now.rates.W_f) || !isfinite(now.rates.Q_f)) {
-        return fail_rates(&scene, v, message);
+    if (!fc_motion_is_finite(&now)) {
+        return fc_fail_motion(&scene, v, message);
     }
-    v->F_t = now.force.x;
-    v->F_t_mean = now.force.x;
-    v->F_y = now.force.y;
-    v->F_y_mean = now.force.y;
-    v->F_n = response.F_n;
-    v->sigma = response.sigma;
-    v->A_r = response.A_r;
+    fc_set_outputs(v, now.force, now.force, &response);
     v->der = now.rates;
     return true;
 }
@@ -164,7 +148,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATO
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {
-            return fail_rates(&now.scene, v, message);
+            return fc_fail_motion(&now.scene, v, message);
         }
     }
     return true;

@@ -64,6 +64,11 @@ typedef struct {
     FcStateRates rates;
 } FcMotion;
 
+static inline bool fc_motion_is_finite(const FcMotion* of) {
+    return isfinite(of->force.x) && isfinite(of->force.y) && isfinite(of->rates.delta) &&
+           isfinite(of->rates.delta_y) && isfinite(of->rates.W_f) && isfinite(of->rates.Q_f);
+}
+
 // FC_FREE for a law without a bound; Coulomb's force has no regime.
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle);
 
