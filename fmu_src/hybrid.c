@@ -233,7 +233,7 @@ static void begin_regime(FcFrictionContact* contact) {
     if (bristle.slips != 0 && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.slips = 0;
     }
-    move_to(contact, (FcVector){bristle.delta, bristle.delta_y}, heat);
+    move_to(contact, fc_delta(bristle), heat);
     state->slips = fc_side_of_slip(bristle);
     state->hybrid.regime = fc_regime(&now.scene, bristle);
     state->past = fc_past(&now.scene);
@@ -247,10 +247,9 @@ static void begin_regime(FcFrictionContact* contact) {
 static void add_drop(FcFrictionContact* contact, FcVector before) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    double work = v->friction.sigma_1 * (v->delta - before.x) * fc_drive_V(&scene.drive, 0.0);
-    if (v->delta_y != before.y) {
-        work += v->friction.sigma_1 * (v->delta_y - before.y) * fc_drive_V_y(&scene.drive, 0.0);
-    }
+    const FcVector drop = {v->delta - before.x, v->delta_y - before.y};
+    const FcVector V = {fc_drive_V(&scene.drive, 0.0), fc_drive_V_y(&scene.drive, 0.0)};
+    const double work = v->friction.sigma_1 * fc_product(drop, V);
     if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
         v->W_f += work;
         move_to(contact, (FcVector){v->delta, v->delta_y}, work);

@@ -65,9 +65,7 @@ FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at,
 
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
                      FcVector n) {
-    const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
-    const double relaxed = relaxes ? at->sigma * at->speed / at->limit * bound->D : 0.0;
-    return fc_product(n, at->V) - relaxed - bound->rate;
+    return fc_product(n, at->V) - fc_plane_relaxation(plane, at) * bound->D - bound->rate;
 }
 
 FcPlaneBound fc_bound(const FcPlane* plane, int slips, double t) {

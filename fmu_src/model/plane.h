@@ -18,8 +18,14 @@ typedef struct {
 } FcVector;
 
 static inline double fc_product(FcVector a, FcVector b) { return a.x * b.x + a.y * b.y; }
+// a + factor b.
+static inline FcVector fc_plus(FcVector a, double factor, FcVector b) {
+    return (FcVector){a.x + factor * b.x, a.y + factor * b.y};
+}
 // |a| |b| times the sine of the angle from a to b.
 static inline double fc_across(FcVector a, FcVector b) { return a.x * b.y - a.y * b.x; }
+
+static inline FcVector fc_delta(FcBristle bristle) { return (FcVector){bristle.delta, bristle.delta_y}; }
 
 // Whether the contact moves or is deflected transversely.
 static inline bool fc_is_planar(const FcScene* scene, FcBristle bristle) {
@@ -44,6 +50,11 @@ typedef struct {
     double static_limit; // N
 } FcPlaneCoefficients;
 FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhase at_t);
+
+// r = sigma |V| / g [1/s] of Dahl and LuGre.
+static inline double fc_plane_relaxation(const FcPlane* plane, const FcPlaneCoefficients* at) {
+    return plane->scene->friction->model == FC_ELASTIC_PLASTIC ? 0.0 : at->sigma * at->speed / at->limit;
+}
 
 // The force [N] of Coulomb's law, g V / |V|; 0 if nothing moves.
 static inline FcVector fc_plane_coulomb(const FcPlaneCoefficients* at) {

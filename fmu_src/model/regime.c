@@ -6,11 +6,6 @@
 
 #include "model/derivatives.h"
 
-// a + factor b.
-static FcVector plus(FcVector a, double factor, FcVector b) {
-    return (FcVector){a.x + factor * b.x, a.y + factor * b.y};
-}
-
 static FcVector times(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
 
 static FcVector direction(FcVector a) {
@@ -19,13 +14,11 @@ static FcVector direction(FcVector a) {
 }
 
 // The part of a that is perpendicular to n, |n| = 1.
-static FcVector perpendicular(FcVector a, FcVector n) { return plus(a, -fc_product(a, n), n); }
-
-static FcVector delta_of(FcBristle bristle) { return (FcVector){bristle.delta, bristle.delta_y}; }
+static FcVector perpendicular(FcVector a, FcVector n) { return fc_plus(a, -fc_product(a, n), n); }
 
 // The direction in which a bristle slips, or else that of its deflection. side is FcRegime, or slips.
 static FcVector direction_of_slip(const FcScene* scene, int side, FcBristle bristle) {
-    return side != 0 && !fc_is_planar(scene, bristle) ? (FcVector){side, 0.0} : direction(delta_of(bristle));
+    return side != 0 && !fc_is_planar(scene, bristle) ? (FcVector){side, 0.0} : direction(fc_delta(bristle));
 }
 
 // A bristle beside its bound at the start of a scene.
@@ -54,7 +47,7 @@ double fc_push(const FcScene* scene, FcBristle bristle) {
 }
 
 static FcBristle moved_onto(const AtBound* of, FcBristle bristle) {
-    const FcVector n = direction(delta_of(bristle));
+    const FcVector n = direction(fc_delta(bristle));
     bristle.delta = of->bound.D * n.x;
     bristle.delta_y = of->bound.D * n.y;
     return bristle;
@@ -98,7 +91,7 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
     }
     AtBound of;
     find_bound(&of, scene, bristle);
-    const bool on_bound = fc_product(of.n, delta_of(bristle)) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
+    const bool on_bound = fc_product(of.n, fc_delta(bristle)) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
     return on_bound && push(&of) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
 }
 
@@ -138,13 +131,8 @@ static Parts slipping_parts(const AtBound* of, FcBristle bristle) {
     const FcVector rate = times(of->bound.rate, of->n);
     return (Parts){.V = of->at.V,
                    .force = times(of->bound.limit, of->n),
-                   .delta_rate = plus(rate, 1.0, turning),
-                   .state_rate = plus(rate, fc_size(bristle) / of->bound.D, turning)};
-}
-
-// r = sigma |V| / g [1/s] of Dahl and LuGre.
-static double relaxation_rate(const FcScene* scene, const FcPlaneCoefficients* at) {
-    return scene->friction->model == FC_ELASTIC_PLASTIC ? 0.0 : at->sigma * at->speed / at->limit;
+                   .delta_rate = fc_plus(rate, 1.0, turning),
+                   .state_rate = fc_plus(rate, fc_size(bristle) / of->bound.D, turning)};
 }
 
 static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
@@ -163,8 +151,8 @@ static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
     if (scene->friction->model == FC_COULOMB) {
         return (Parts){.V = at.V, .force = fc_plane_coulomb(&at)};
     }
-    const FcVector delta = delta_of(bristle);
-    const FcVector rate = plus(at.V, -relaxation_rate(scene, &at), delta);
+    const FcVector delta = fc_delta(bristle);
+    const FcVector rate = fc_plus(at.V, -fc_plane_relaxation(&plane, &at), delta);
     return (Parts){.V = at.V, .force = times(at.sigma, delta), .delta_rate = rate, .state_rate = rate};
 }
 
@@ -172,15 +160,15 @@ static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
 static FcVector whole_force(const FcFriction* friction, const Parts* of) {
     FcVector F = of->force;
     if (friction->model != FC_COULOMB && friction->sigma_1 != 0.0) {
-        F = plus(F, friction->sigma_1, of->delta_rate);
+        F = fc_plus(F, friction->sigma_1, of->delta_rate);
     }
-    return friction->sigma_2 != 0.0 ? plus(F, friction->sigma_2, of->V) : F;
+    return friction->sigma_2 != 0.0 ? fc_plus(F, friction->sigma_2, of->V) : F;
 }
 
 FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
     const FcFriction* friction = scene->friction;
     if (friction->model != FC_COULOMB && friction->sigma_1 == 0.0 && friction->sigma_2 == 0.0) {
-        return times(contact->sigma, delta_of(bristle));
+        return times(contact->sigma, fc_delta(bristle));
     }
     const Parts at = parts(scene, friction->sigma_1 != 0.0 ? fc_regime(scene, bristle) : FC_FREE, bristle);
     return whole_force(friction, &at);
@@ -231,39 +219,41 @@ static Parts slipping_along(const AtBound* of, FcBristle bristle, double log_sig
         size > 0.0 ? times(1.0 / size, perpendicular(delta_along, n)) : (FcVector){0.0, 0.0};
     const FcVector turning = perpendicular(V, n);
     FcVector turning_along = perpendicular(V_along, n);
-    turning_along = plus(turning_along, -fc_product(V, n_along), n);
-    turning_along = plus(turning_along, -fc_product(V, n), n_along);
-    const FcVector with_D = plus(times(along->bound_rate, n), of->bound.rate, n_along);
+    turning_along = fc_plus(turning_along, -fc_product(V, n_along), n);
+    turning_along = fc_plus(turning_along, -fc_product(V, n), n_along);
+    const FcVector with_D = fc_plus(times(along->bound_rate, n), of->bound.rate, n_along);
     const double lag = size / D;
     const double lag_along = fc_product(delta_along, n) / D - lag * (log_limit - log_sigma);
     return (Parts){.V = V_along,
-                   .force = plus(times(limit * log_limit, n), limit, n_along),
-                   .delta_rate = plus(with_D, 1.0, turning_along),
-                   .state_rate = plus(plus(with_D, lag, turning_along), lag_along, turning)};
+                   .force = fc_plus(times(limit * log_limit, n), limit, n_along),
+                   .delta_rate = fc_plus(with_D, 1.0, turning_along),
+                   .state_rate = fc_plus(fc_plus(with_D, lag, turning_along), lag_along, turning)};
 }
 
-static Parts free_along(const FcScene* scene, const FcPlaneCoefficients* at, FcBristle bristle,
-                        double log_sigma, double log_limit, const FcDirection* along) {
+static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, double log_limit,
+                        const FcDirection* along) {
+    const FcPlaneCoefficients* at = &of->at;
+    const int model = of->plane.scene->friction->model;
     const FcVector V_along = {along->V, along->V_y};
     const FcVector direction_of_V = direction(at->V);
-    if (scene->friction->model == FC_COULOMB) {
+    if (model == FC_COULOMB) {
         FcVector turning = {0.0, 0.0};
         if (V_along.x != 0.0 || V_along.y != 0.0) { // at rest the force jumps: not a number
             turning = times(at->limit / at->speed, perpendicular(V_along, direction_of_V));
         }
-        return (Parts){.V = V_along, .force = plus(turning, at->limit * log_limit, direction_of_V)};
+        return (Parts){.V = V_along, .force = fc_plus(turning, at->limit * log_limit, direction_of_V)};
     }
-    const FcVector delta = delta_of(bristle);
+    const FcVector delta = fc_delta(bristle);
     const FcVector delta_along = {along->delta, along->delta_y};
     FcVector rate = V_along; // of delta' = V - r delta, with r = sigma |V| / g
-    if (scene->friction->model != FC_ELASTIC_PLASTIC) {
-        const double r = relaxation_rate(scene, at);
+    if (model != FC_ELASTIC_PLASTIC) {
+        const double r = fc_plane_relaxation(&of->plane, at);
         const double r_along =
             r * (log_sigma - log_limit) + at->sigma / at->limit * fc_product(V_along, direction_of_V);
-        rate = plus(plus(V_along, -r_along, delta), -r, delta_along);
+        rate = fc_plus(fc_plus(V_along, -r_along, delta), -r, delta_along);
     }
     return (Parts){.V = V_along,
-                   .force = times(at->sigma, plus(delta_along, log_sigma, delta)),
+                   .force = times(at->sigma, fc_plus(delta_along, log_sigma, delta)),
                    .delta_rate = rate,
                    .state_rate = rate};
 }
@@ -277,7 +267,7 @@ static Parts parts_along(const FcScene* scene, FcRegime regime, FcBristle bristl
     find_bound(&of, scene, bristle);
     const FcContactLogSlope by = fc_contact_along(scene, along);
     const double log_limit = log_limit_along(scene->friction, regime, of.at.V, by.F_n, along);
-    return regime == FC_FREE ? free_along(scene, &of.at, bristle, by.sigma, log_limit, along)
+    return regime == FC_FREE ? free_along(&of, bristle, by.sigma, log_limit, along)
                              : slipping_along(&of, bristle, by.sigma, log_limit, along);
 }
 
@@ -285,9 +275,9 @@ FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristl
     const Parts at = parts(scene, regime, bristle);
     const Parts change = parts_along(scene, regime, bristle, along);
     const FcVector F = whole_force(scene->friction, &at);
-    FcVector F_along = plus(whole_force(scene->friction, &change), along->sigma_2, at.V);
+    FcVector F_along = fc_plus(whole_force(scene->friction, &change), along->sigma_2, at.V);
     if (scene->friction->model != FC_COULOMB) {
-        F_along = plus(F_along, along->sigma_1, at.delta_rate);
+        F_along = fc_plus(F_along, along->sigma_1, at.delta_rate);
     }
     const double power = fc_product(F_along, at.V) + fc_product(F, change.V);
     const double stored = fc_product(change.force, at.delta_rate) + fc_product(at.force, change.delta_rate);

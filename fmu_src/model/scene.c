@@ -233,10 +233,6 @@ FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase a
     return rates;
 }
 
-FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
-    return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
-}
-
 double fc_scene_smallest_d(const FcScene* scene, double h) {
     assert(h >= 0.0);
     const FcDrive* drive = &scene->drive;

@@ -104,7 +104,6 @@ typedef struct {
     double limit;
     double ratio;
 } FcLogRates;
-FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
 // Bounds over [0, h], h [s] >= 0.

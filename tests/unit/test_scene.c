@@ -95,7 +95,7 @@ static void rates_are_derivatives(void) {
         const Kind one = kind(k);
         const FcScene scene = moving_scene(&one.contact, &one.friction, 1.0);
         for (double t = 0.01 * PERIOD; t < PERIOD; t += 0.09 * PERIOD) {
-            const FcLogRates rates = fc_scene_log_rates(&scene, t);
+            const FcLogRates rates = fc_scene_log_rates_at_phase(&scene, t, fc_drive_phase(&scene.drive, t));
             CHECK_WITHIN(rates.sigma, slope(log_stiffness, &scene, t), 1e-8 * omega);
             CHECK_WITHIN(rates.limit, slope(log_limit, &scene, t), 1e-8 * omega);
             CHECK_WITHIN(fc_scene_d_rate(&scene, t), slope(fc_scene_d, &scene, t), 1e-9 * omega * 1.1e-6);
