@@ -56,7 +56,7 @@ double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int 
 
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t) {
-    const FcLogRates rates = fc_scene_log_rates_at_phase(&plane->of_static_limit, t, at_t);
+    const FcLogRates rates = fc_scene_log_rates(&plane->of_static_limit, t, at_t);
     const double by_curve = is_kinetic(plane, slips) ? log_curve_rate(plane, at, t, at_t) : 0.0;
     const double limit = limit_of_bound(plane, at, slips);
     const double D = limit / at->sigma;

@@ -47,8 +47,8 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 // bristle meets its bound, z[1] a slipping bristle is no longer pushed. 1 if there is no such event.
 void fc_regime_indicators(const FcScene* scene, FcRegime regime, FcBristle bristle, double z[2]);
 
-// The push at the start, at any distance from the bound: in the direction of the
-// deflection, or along a line in that in which the bristle slips.
+// The push at the start, at any distance from the bound: in the direction of the deflection, or along a line in
+// that in which the bristle slips.
 double fc_push(const FcScene* scene, FcBristle bristle);
 
 // Time derivatives of the states.

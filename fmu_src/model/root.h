@@ -1,3 +1,4 @@
+// Roots of a function in a bracket.
 #ifndef FC_MODEL_ROOT_H
 #define FC_MODEL_ROOT_H
 
@@ -10,7 +11,7 @@ typedef struct {
 typedef FcRootFunction (*FcRootEvaluation)(void* context, double t);
 
 // The root of f between a and b, a < b, at which f has opposite signs: steps to the nearer root of the parabola of
-// f, f' and f'', or bisections if they leave the bracket or do not shrink. The last step is at most last_step times
+// f, f' and f'', or bisections if they leave the bracket or do not shrink. Good from an end at which f' vanishes. The last step is at most last_step times
 // the distance from a. The error is then of the order of its cube. Adds its evaluations to *evaluations.
 double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b, double last_step,
                double* evaluations);

@@ -198,39 +198,31 @@ double fc_scene_stiffness(const FcScene* scene, double t) {
     return fc_contact_stiffness(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
 }
 
-FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t) {
+FcLogRates fc_scene_log_rates(const FcScene* scene, double t, FcPhase at_t) {
+    if (!fc_scene_depends_on_d(scene)) {
+        return (FcLogRates){0.0, 0.0};
+    }
     const FcDrive* drive = &scene->drive;
-    FcLogRates rates = {0.0, 0.0, 0.0};
-    if (fc_scene_depends_on_d(scene)) {
-        const double d_rate = d_rate_at_phase(scene, t, at_t);
-        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
-        rates.sigma = by_d.sigma * d_rate;
-        rates.limit = by_d.F_n * d_rate;
-        rates.ratio = (by_d.F_n - by_d.sigma) * d_rate;
-        if (drive->E.rate != 0.0) {
-            const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t));
-            rates.sigma += by_E.sigma * drive->E.rate;
-            rates.limit += by_E.F_n * drive->E.rate;
-            rates.ratio += (by_E.F_n - by_E.sigma) * drive->E.rate;
-        }
-        if (scene->floats) { // the surfaces follow the load: the effect of E on F_n cancels, also in rounding
-            rates.limit =
-                drive->load.rate / fc_drive_load(drive, t) + by_d.F_n * fc_drive_d_rate_at_phase(drive, at_t);
-        }
-        if (!fc_limit_follows_load(scene->friction)) {
-            rates.limit = 0.0;
-            rates.ratio = -rates.sigma;
-        } else if (rates.sigma == 0.0) {
-            rates.ratio = rates.limit;
-        }
+    const double d_rate = d_rate_at_phase(scene, t, at_t);
+    const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
+    double sigma = by_d.sigma * d_rate;
+    double limit = by_d.F_n * d_rate;
+    double ratio = (by_d.F_n - by_d.sigma) * d_rate;
+    if (drive->E.rate != 0.0) {
+        const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t));
+        sigma += by_E.sigma * drive->E.rate;
+        limit += by_E.F_n * drive->E.rate;
+        ratio += (by_E.F_n - by_E.sigma) * drive->E.rate;
     }
-    if (fc_has_stribeck_curve(scene->friction)) {
-        const FcVelocity at = fc_drive_velocity_at_phase(drive, t, at_t);
-        const double by_V = fc_stribeck_slope(scene->friction, at.V) / fc_stribeck(scene->friction, at.V);
-        rates.limit += by_V * at.rate;
-        rates.ratio += by_V * at.rate;
+    if (scene->floats) { // the surfaces follow the load: the effect of E on F_n cancels, also in rounding
+        limit = drive->load.rate / fc_drive_load(drive, t) + by_d.F_n * fc_drive_d_rate_at_phase(drive, at_t);
     }
-    return rates;
+    if (!fc_limit_follows_load(scene->friction)) {
+        ratio = -sigma;
+    } else if (sigma == 0.0) {
+        ratio = limit;
+    }
+    return (FcLogRates){sigma, ratio};
 }
 
 double fc_scene_smallest_d(const FcScene* scene, double h) {
