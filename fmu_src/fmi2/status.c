@@ -10,36 +10,35 @@ static fmi2Status refuse_kind(fmi2Component c, FcCall call, const char* answered
     return fc_refuse(instance, call, "steps are synchronous: %s", answered);
 }
 
-// The instance if it has an answer of the kind and a place for it. Otherwise NULL, after logging the reason.
-static const FcInstance* answering(fmi2Component c, FcCall call, fmi2StatusKind s, fmi2StatusKind answered,
-                                   const char* type, const void* value) {
-    const FcInstance* instance = fc_instance_enter(c, call);
-    if (instance && s != answered) {
-        fc_refuse(instance, call, "status kind %d: only %s (%d) is a %s", (int)s,
-                  answered == fmi2Terminated ? "fmi2Terminated" : "fmi2LastSuccessfulTime", (int)answered,
-                  type);
-        return NULL;
-    }
-    if (instance && !value) {
-        fc_refuse(instance, call, "value is NULL");
-        return NULL;
-    }
-    return instance;
-}
-
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real* value) {
-    const FcInstance* instance =
-        answering(c, FC_CALL_GET_REAL_STATUS, s, fmi2LastSuccessfulTime, "Real", value);
+    const FcInstance* instance = fc_instance_enter(c, FC_CALL_GET_REAL_STATUS);
     if (!instance) {
         return fmi2Error;
+    }
+    if (s != fmi2LastSuccessfulTime) {
+        return fc_refuse(instance, FC_CALL_GET_REAL_STATUS,
+                         "status kind %d: only fmi2LastSuccessfulTime (%d) is a Real", (int)s,
+                         (int)fmi2LastSuccessfulTime);
+    }
+    if (!value) {
+        return fc_refuse(instance, FC_CALL_GET_REAL_STATUS, "value is NULL");
     }
     *value = instance->contact.state.time;
     return fmi2OK;
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean* value) {
-    if (!answering(c, FC_CALL_GET_BOOLEAN_STATUS, s, fmi2Terminated, "Boolean", value)) {
+    const FcInstance* instance = fc_instance_enter(c, FC_CALL_GET_BOOLEAN_STATUS);
+    if (!instance) {
         return fmi2Error;
+    }
+    if (s != fmi2Terminated) {
+        return fc_refuse(instance, FC_CALL_GET_BOOLEAN_STATUS,
+                         "status kind %d: only fmi2Terminated (%d) is a Boolean", (int)s,
+                         (int)fmi2Terminated);
+    }
+    if (!value) {
+        return fc_refuse(instance, FC_CALL_GET_BOOLEAN_STATUS, "value is NULL");
     }
     *value = fmi2False; // the contact never asks to end a run
     return fmi2OK;
