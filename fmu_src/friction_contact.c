@@ -176,7 +176,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     }
     if (!isfinite(scene->at_E.area_0) || !isfinite(scene->at_E.load_0) ||
         !isfinite(scene->at_E.stiffness_0)) {
-        return fail_stiffness(message, drive->d.value, fc_drive_largest_E(drive, h));
+        return fail_stiffness(message, drive->d.value, fc_most(E, end));
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
     const bool stays_open = scene->is_open && !scene->floats;
@@ -188,7 +188,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         return fail_separation(scene, h, message);
     }
     if (!isfinite(fc_scene_largest_stiffness(scene, h))) {
-        return fail_stiffness(message, d, fc_drive_largest_E(drive, h));
+        return fail_stiffness(message, d, fc_most(E, end));
     }
     if (!isfinite(fc_scene_mean_limit(scene, 0.0)) || !isfinite(fc_scene_mean_limit(scene, h))) {
         return fc_message_set(
@@ -206,49 +206,62 @@ static bool is_to_be_checked(const FcScene* scene) {
            fc_limit_follows_load(scene->friction);
 }
 
-// The outputs of the scene at its start.
+// The faster of the two velocities, along and transverse, for a message: its input, and the amplitude of its
+// vibration.
 typedef struct {
-    FcVector force; // N, (F_t, F_y)
-    FcContactResponse contact;
-} Outputs;
+    const char* name;
+    double V; // m/s
+    const char* vibration;
+    double amplitude; // m/s
+} Fastest;
 
-FcFastest fc_fastest(const FcDrive* drive) {
+static Fastest fastest(const FcDrive* drive) {
     const FcVibration* v = &drive->vibration;
     return fabs(drive->V_y.value) + v->V_2 > fabs(drive->V.value) + v->V_1
-               ? (FcFastest){"V_y", drive->V_y.value, "vibration.V_2", v->V_2}
-               : (FcFastest){"V", drive->V.value, "vibration.V_1", v->V_1};
+               ? (Fastest){"V_y", drive->V_y.value, "vibration.V_2", v->V_2}
+               : (Fastest){"V", drive->V.value, "vibration.V_1", v->V_1};
 }
 
-// For a bristle within its bound; false if an output is beyond the largest number.
-static bool find_outputs(const FcScene* scene, FcContactResponse contact, FcBristle bristle, Outputs* outputs,
-                         FcMessage* message) {
-    *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
+bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* message) {
+    const Fastest of = fastest(&scene->drive);
+    return fc_message_set(
+        message,
+        "F_t, F_y or the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = "
+        "%.9g m/s with %s = %.9g m/s, delta = %.9g m, delta_y = %.9g m",
+        of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
+}
+
+// (F_t, F_y) of a bristle within its bound; false if an output is beyond the largest number.
+static bool find_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle,
+                       FcVector* force, FcMessage* message) {
+    *force = fc_force(scene, contact, bristle);
     if (!isfinite(bristle.delta) || !isfinite(bristle.delta_y)) {
-        const FcFastest of = fc_fastest(&scene->drive);
+        const Fastest of = fastest(&scene->drive);
         return fc_message_set(message, "%s is beyond the largest number: %s = %.9g m/s with %s = %.9g m/s",
                               isfinite(bristle.delta) ? "delta_y" : "delta", of.name, of.V, of.vibration,
                               of.amplitude);
     }
-    if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
+    if (!isfinite(contact->sigma) || !isfinite(contact->A_r) || !isfinite(contact->F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
-    const FcVector force = outputs->force;
-    if (!isfinite(force.x) || !isfinite(force.y)) {
-        const bool along = !isfinite(force.x);
+    if (!isfinite(force->x) || !isfinite(force->y)) {
+        const bool along = !isfinite(force->x);
         return fc_message_set(message,
                               "%s = sigma %s is beyond the largest number: sigma = %.9g N/m, %s = %.9g m",
-                              along ? "F_t" : "F_y", along ? "delta" : "delta_y", contact.sigma,
+                              along ? "F_t" : "F_y", along ? "delta" : "delta_y", contact->sigma,
                               along ? "delta" : "delta_y", along ? bristle.delta : bristle.delta_y);
     }
     return true;
 }
 
-static void set_outputs(FcVariables* v, const Outputs* now) {
-    v->F_t = now->force.x;
-    v->F_y = now->force.y;
-    v->F_n = now->contact.F_n;
-    v->sigma = now->contact.sigma;
-    v->A_r = now->contact.A_r;
+void fc_set_outputs(FcVariables* v, FcVector force, FcVector mean, const FcContactResponse* contact) {
+    v->F_t = force.x;
+    v->F_y = force.y;
+    v->F_t_mean = mean.x;
+    v->F_y_mean = mean.y;
+    v->F_n = contact->F_n;
+    v->sigma = contact->sigma;
+    v->A_r = contact->A_r;
 }
 
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
@@ -302,12 +315,13 @@ bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
 static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    Outputs now;
+    const FcContactResponse response = fc_scene_contact(&scene, 0.0);
+    FcVector force;
     const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
-    if (!find_outputs(&scene, fc_scene_contact(&scene, 0.0), bristle, &now, message)) {
+    if (!find_force(&scene, &response, bristle, &force, message)) {
         return false;
     }
-    set_outputs(v, &now);
+    fc_set_outputs(v, force, (FcVector){v->F_t_mean, v->F_y_mean}, &response);
     return true;
 }
 
@@ -319,16 +333,11 @@ bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* me
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
     const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
-    const FcStateRates rates = fc_motion(&scene, fc_regime(&scene, bristle), bristle).rates;
-    if (!isfinite(rates.delta) || !isfinite(rates.delta_y) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
-        const FcFastest of = fc_fastest(&scene.drive);
-        return fc_message_set(
-            message,
-            "the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = %.9g "
-            "m/s with %s = %.9g m/s, F_t = %.9g N, F_y = %.9g N",
-            of.name, of.V, of.vibration, of.amplitude, v->F_t, v->F_y);
+    const FcMotion now = fc_motion(&scene, fc_regime(&scene, bristle), bristle);
+    if (!fc_motion_is_finite(&now)) {
+        return fc_fail_motion(&scene, v, message);
     }
-    v->der = rates;
+    v->der = now.rates;
     return true;
 }
 
@@ -565,16 +574,16 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         response = fc_scene_contact(&moved, 0.0);
     }
     const FcScene* end = ends_elsewhere ? &moved : &scene;
-    Outputs now;
+    FcVector force;
     const bool slips = result.on_bound && !fc_scene_is_loose(end);
     const FcBristle reached = slips ? fc_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
-    if (!find_outputs(end, response, reached, &now, message)) {
+    if (!find_force(end, &response, reached, &force, message)) {
         return false;
     }
-    const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : now.force;
+    const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : force;
     if (!isfinite(mean.x) || !isfinite(mean.y) || !isfinite(result.delta) || !isfinite(result.delta_y) ||
         !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat)) {
-        const FcFastest of = fc_fastest(&scene.drive);
+        const Fastest of = fastest(&scene.drive);
         return fc_message_set(
             message,
             "the step by h = %.9g s gives a result beyond the largest number at %s = %.9g m/s, "
@@ -583,9 +592,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcPast past = fc_is_bounded(&v->friction) ? fc_past(end) : (FcPast){.sigma = 0.0};
     commit(&contact->state, h, &result, reached, &past);
-    set_outputs(&contact->state.variables, &now);
-    contact->state.variables.F_t_mean = mean.x;
-    contact->state.variables.F_y_mean = mean.y;
+    fc_set_outputs(&contact->state.variables, force, mean, &response);
     contact->state.time = t + h;
     contact->state.time_rest = time_rest;
     return true;

@@ -126,21 +126,17 @@ FcScene fc_friction_contact_scene(FcFrictionContact* contact);
 // they are NULL.
 FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]);
 
+// Sets F_t, F_y, their means, F_n, sigma and A_r.
+void fc_set_outputs(FcVariables* v, FcVector force, FcVector mean, const FcContactResponse* contact);
+
 // Whether the present inputs and parameters are a valid combination.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
 
 // Recomputes the rates of the states, der, for the present outputs and any law of friction.
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message);
 
-// The faster of the two velocities, along and transverse, for a message: its input, and the amplitude of its
-// vibration.
-typedef struct {
-    const char* name;
-    double V; // m/s
-    const char* vibration;
-    double amplitude; // m/s
-} FcFastest;
-FcFastest fc_fastest(const FcDrive* drive);
+// False with *message filled for a motion that is not finite.
+bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* message);
 
 // Whether the vibration is on and a step of h [s] exceeds half a period. F_t is then one sample, and F_t_mean
 // is the output to use.

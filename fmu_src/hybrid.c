@@ -92,27 +92,18 @@ static void see_inputs(FcFrictionContact* contact) {
 // The contact with its present inputs and their estimated speeds, and its bristle's bound.
 typedef struct {
     FcScene scene;
-    FcScene bound; // points to bound_law
-    FcFriction bound_law;
+    FcPlane plane; // points to scene
+    int slips;
     int side; // of the bound that ends its regime: 0 for either
 } View;
 
 static void look(FcFrictionContact* contact, View* view) {
-    const int slips = fc_friction_contact_bristle(contact).slips;
     double speed[FC_INPUT_COUNT];
     find_speeds(contact, speed);
     view->scene = fc_friction_contact_scene_moving(contact, speed);
-    view->bound = fc_scene_of_bound(&view->scene, slips, &view->bound_law);
-    view->side = slips != 0 ? slips : (int)regime_of(contact);
-}
-
-static bool fail_rates(const FcScene* scene, const FcVariables* v, FcMessage* message) {
-    const FcFastest of = fc_fastest(&scene->drive);
-    return fc_message_set(
-        message,
-        "F_t, F_y or the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = "
-        "%.9g m/s with %s = %.9g m/s, delta = %.9g m, delta_y = %.9g m",
-        of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
+    fc_plane_make(&view->plane, &view->scene);
+    view->slips = fc_friction_contact_bristle(contact).slips;
+    view->side = view->slips != 0 ? view->slips : (int)regime_of(contact);
 }
 
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
@@ -123,17 +114,10 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const FcContactResponse response = fc_scene_contact(&scene, 0.0);
     const FcMotion now = fc_motion(&scene, regime_of(contact), fc_friction_contact_bristle(contact));
-    if (!isfinite(now.force.x) || !isfinite(now.force.y) || !isfinite(now.rates.delta) ||
-        !isfinite(now.rates.delta_y) || !isfinite(now.rates.W_f) || !isfinite(now.rates.Q_f)) {
-        return fail_rates(&scene, v, message);
+    if (!fc_motion_is_finite(&now)) {
+        return fc_fail_motion(&scene, v, message);
     }
-    v->F_t = now.force.x;
-    v->F_t_mean = now.force.x;
-    v->F_y = now.force.y;
-    v->F_y_mean = now.force.y;
-    v->F_n = response.F_n;
-    v->sigma = response.sigma;
-    v->A_r = response.A_r;
+    fc_set_outputs(v, now.force, now.force, &response);
     v->der = now.rates;
     return true;
 }
@@ -164,7 +148,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATO
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {
-            return fail_rates(&now.scene, v, message);
+            return fc_fail_motion(&now.scene, v, message);
         }
     }
     return true;
@@ -192,7 +176,7 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     View now;
     look(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
-    const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound_in_plane(&now.bound, 0.0).D;
+    const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound(&now.plane, now.slips, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const double size = fc_size(bristle);
     const double onto = size > 0.0 ? D / size : 0.0;
@@ -246,10 +230,10 @@ static void begin_regime(FcFrictionContact* contact) {
     double heat;
     FcBristle bristle =
         fc_jump(&now.scene, state->time, &state->past, fc_friction_contact_bristle(contact), &heat);
-    if (bristle.slips != 0 && !(fc_push_in_plane(&now.scene, bristle) > 0.0)) { // the event of a push of 0
+    if (bristle.slips != 0 && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.slips = 0;
     }
-    move_to(contact, (FcVector){bristle.delta, bristle.delta_y}, heat);
+    move_to(contact, fc_delta(bristle), heat);
     state->slips = fc_side_of_slip(bristle);
     state->hybrid.regime = fc_regime(&now.scene, bristle);
     state->past = fc_past(&now.scene);
@@ -263,10 +247,9 @@ static void begin_regime(FcFrictionContact* contact) {
 static void add_drop(FcFrictionContact* contact, FcVector before) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    double work = v->friction.sigma_1 * (v->delta - before.x) * fc_drive_V(&scene.drive, 0.0);
-    if (v->delta_y != before.y) {
-        work += v->friction.sigma_1 * (v->delta_y - before.y) * fc_drive_V_y(&scene.drive, 0.0);
-    }
+    const FcVector drop = {v->delta - before.x, v->delta_y - before.y};
+    const FcVector V = {fc_drive_V(&scene.drive, 0.0), fc_drive_V_y(&scene.drive, 0.0)};
+    const double work = v->friction.sigma_1 * fc_product(drop, V);
     if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
         v->W_f += work;
         move_to(contact, (FcVector){v->delta, v->delta_y}, work);
@@ -325,7 +308,7 @@ static double first_turn(const View* view, int side, double start, double period
     if (!(start < end)) { // an input may be 0 at the start
         return end;
     }
-    FcPushed of = {&view->scene, &view->bound, side};
+    FcPushed of = {&view->plane, view->slips, {side, 0.0}};
     double evaluations = 0.0;
     double before = fc_push_at(&of, start);
     double t = start;
@@ -345,7 +328,7 @@ static double first_turn(const View* view, int side, double start, double period
 static bool turns_near(const View* view, int side, double delta, double t) {
     return view->scene.friction->model != FC_ELASTIC_PLASTIC ||
            side * (delta + fc_drive_displacement(&view->scene.drive, 0.0, t)) >
-               NEAR_THE_BOUND * fc_bound(&view->bound, t);
+               NEAR_THE_BOUND * fc_bound(&view->plane, view->slips, t).D;
 }
 
 // The time [s], at most `longest`, within which an input that falls does not come to 0.

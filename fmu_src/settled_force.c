@@ -164,8 +164,7 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
         return false;
     }
     for (int j = 0; j < POINTS; j++) {
-        gap.x -= force[j].x / POINTS;
-        gap.y -= force[j].y / POINTS;
+        gap = fc_plus(gap, -1.0 / POINTS, force[j]);
     }
     *slope = (FcVector){0.0, 0.0};
     *error = 0.0;
@@ -173,15 +172,13 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
         FcVector c = {0.0, 0.0};
         for (int j = 0; j < POINTS; j++) {
             const double at_point = cos(FC_PI * k * (j + 0.5) / POINTS);
-            c.x += 2.0 / POINTS * (force[j].x - force[0].x) * at_point;
-            c.y += 2.0 / POINTS * (force[j].y - force[0].y) * at_point;
+            c = fc_plus(c, 2.0 / POINTS * at_point, fc_plus(force[j], -1.0, force[0]));
         }
-        const FcVector term = {2.0 * k * k * c.x / range, 2.0 * k * k * c.y / range};
-        slope->x += k % 2 == 1 ? term.x : -term.x;
-        slope->y += k % 2 == 1 ? term.y : -term.y;
-        gap.x += k % 2 == 1 ? c.x : -c.x;
-        gap.y += k % 2 == 1 ? c.y : -c.y;
-        *error = k >= POINTS - 2 ? fc_most(*error, hypot(term.x, term.y)) : 0.0;
+        const double sign = k % 2 == 1 ? 1.0 : -1.0;
+        const double factor = 2.0 * k * k / range;
+        *slope = fc_plus(*slope, sign * factor, c);
+        gap = fc_plus(gap, sign, c);
+        *error = k >= POINTS - 2 ? fc_most(*error, fabs(factor) * hypot(c.x, c.y)) : 0.0;
     }
     *missed = hypot(gap.x, gap.y);
     return true;

@@ -89,16 +89,12 @@ const char* fc_interface_name(FcInterface of) {
     return of == FC_MODEL_EXCHANGE ? "model exchange" : "co-simulation";
 }
 
-unsigned fc_modes_of(unsigned states, FcInterface of) {
+void fc_mode_names(unsigned states, FcInterface of, char* text, size_t size) {
     const unsigned foreign = of == FC_MODEL_EXCHANGE ? S | P | X | C : V | Y;
-    return states & ~foreign;
-}
-
-void fc_mode_names(unsigned states, char* text, size_t size) {
     size_t length = 0;
     text[0] = '\0';
     for (unsigned state = FC_START_END; state <= FC_CONTINUOUS_TIME_MODE && length < size; state <<= 1) {
-        if (states & state) {
+        if (states & ~foreign & state) {
             const int written = snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "",
                                          fc_mode_name((FcMode)state));
             length += (size_t)written;

@@ -97,10 +97,8 @@ extern const FcCallRule fc_call_table[FC_CALL_COUNT];
 const char* fc_mode_name(FcMode state);
 const char* fc_interface_name(FcInterface of);
 
-// The states of the sum that an instance of the interface can be in.
-unsigned fc_modes_of(unsigned states, FcInterface of);
-
-// Writes the names of the states in the sum, separated by ", ", into text. Truncates when size is short.
-void fc_mode_names(unsigned states, char* text, size_t size);
+// Writes the names of the states in the sum that an instance of the interface can be in, separated by ", ", into
+// text. Truncates when size is short.
+void fc_mode_names(unsigned states, FcInterface of, char* text, size_t size);
 
 #endif

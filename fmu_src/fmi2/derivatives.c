@@ -147,8 +147,7 @@ static const double MOVED_PART = 3e-5;
 static FcVector reached_after(const FcFrictionContact* contact, const FcVariableInfo* info, double change) {
     FcFrictionContact moved = moved_by(contact, info, change);
     const FcScene scene = fc_friction_contact_scene(&moved);
-    const FcBristle end = fc_friction_contact_reached(&moved, &scene);
-    return (FcVector){end.delta, end.delta_y};
+    return fc_delta(fc_friction_contact_reached(&moved, &scene));
 }
 
 // Its derivative by one variable, by a difference, since it may be the least bound on the way: to the side on which
@@ -190,9 +189,9 @@ static double bound_rate_by(const FcFrictionContact* contact, bool hybrid, int s
     for (int k = 0; k < 5; k++) {
         FcFrictionContact moved = moved_by(contact, info, k * change);
         const FcScene scene = scene_of(&moved, hybrid);
-        FcFriction friction;
-        const FcScene bound = fc_scene_of_bound(&scene, slips, &friction);
-        sum += weight[k] * fc_bound_in_plane(&bound, 0.0).rate;
+        FcPlane plane;
+        fc_plane_make(&plane, &scene);
+        sum += weight[k] * fc_bound(&plane, slips, 0.0).rate;
     }
     return change != 0.0 ? sum / (12.0 * change) : 0.0;
 }
@@ -290,8 +289,7 @@ static bool settled_force_along(const FcFrictionContact* contact, FcVariables al
         if (change != 0.0 && !fc_settled_force_slope(contact, info->offset, &slope, message)) {
             return false;
         }
-        derivative->x += slope.x * change;
-        derivative->y += slope.y * change;
+        *derivative = fc_plus(*derivative, change, slope);
     }
     return true;
 }

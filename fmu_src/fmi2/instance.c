@@ -16,7 +16,7 @@ static void refuse_call(const FcInstance* instance, FcCall call) {
         return;
     }
     char allowed[160];
-    fc_mode_names(fc_modes_of(fc_call_table[call].allowed, of), allowed, sizeof allowed);
+    fc_mode_names(fc_call_table[call].allowed, of, allowed, sizeof allowed);
     fc_refuse(instance, call, "not allowed in state '%s', only in: %s",
               fc_mode_name((FcMode)instance->experiment.mode), allowed);
 }

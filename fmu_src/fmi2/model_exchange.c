@@ -1,6 +1,7 @@
 // The functions of FMI for Model Exchange: time, states, rates, events. hybrid.h has their meaning.
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
@@ -178,10 +179,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx
     }
     FcVariables* v = &instance->contact.state.variables;
     v->solver.evaluations += 1.0;
-    derivatives[0] = v->der.delta;
-    derivatives[1] = v->der.W_f;
-    derivatives[2] = v->der.Q_f;
-    derivatives[3] = v->der.delta_y;
+    memcpy(derivatives, &v->der, sizeof v->der); // in the order of ModelStructure/Derivatives, too
     return fmi2OK;
 }
 

@@ -39,20 +39,14 @@ FcSavedState* fc_saved_state_to_fill(const FcInstance* instance, FcCall call, fm
 // Clears the numbers that do not belong to the present values, so that equal states are equal bytes.
 static void drop_stale_outputs(const FcInstance* instance, FcSavedState* saved) {
     FcVariables* variables = &saved->friction.variables;
-    variables->F_t = 0.0;
-    variables->F_y = 0.0;
-    variables->sigma = 0.0;
-    variables->A_r = 0.0;
-    variables->F_n = 0.0;
-    if (fc_instance_is_hybrid(instance)) {
-        variables->F_t_mean = 0.0;
-        variables->F_y_mean = 0.0;
-    }
-    if (saved->experiment.mode == FC_INITIALIZATION_MODE) {
+    const FcVector none = {0.0, 0.0};
+    const bool is_initializing = saved->experiment.mode == FC_INITIALIZATION_MODE;
+    const bool has_mean = !is_initializing && !fc_instance_is_hybrid(instance);
+    const FcVector mean = {variables->F_t_mean, variables->F_y_mean};
+    fc_set_outputs(variables, none, has_mean ? mean : none, &(FcContactResponse){0});
+    if (is_initializing) {
         variables->delta = 0.0;
         variables->delta_y = 0.0;
-        variables->F_t_mean = 0.0;
-        variables->F_y_mean = 0.0;
         variables->W_f = 0.0;
         variables->Q_f = 0.0;
     }

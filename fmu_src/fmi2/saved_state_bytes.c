@@ -83,14 +83,13 @@ typedef struct {
     Direction direction;
     unsigned char* bytes;
     size_t at;
-    const char* part; // of the state that is transferred
     const char* flaw; // the first part with an impossible value
 } Cursor;
 
-// Notes whether a value of the present part is possible.
-static void expect(Cursor* cursor, bool is_possible) {
+// Notes whether a value of that part is possible.
+static void expect(Cursor* cursor, const char* part, bool is_possible) {
     if (!is_possible && !cursor->flaw) {
-        cursor->flaw = cursor->part;
+        cursor->flaw = part;
     }
 }
 
@@ -109,50 +108,45 @@ static void transfer_bits(Cursor* cursor, uint64_t* bits, size_t size) {
 }
 
 static void transfer_integer(Cursor* cursor, int* value) {
-    const int32_t before = *value;
-    uint64_t bits = (uint32_t)before;
+    uint64_t bits = (uint32_t)*value;
     transfer_bits(cursor, &bits, 4);
     const uint32_t low = (uint32_t)bits;
-    int32_t after;
-    memcpy(&after, &low, sizeof after);
-    *value = after;
+    memcpy(value, &low, sizeof low);
 }
 
-static void transfer_real(Cursor* cursor, double* value) {
+static void transfer_real(Cursor* cursor, const char* part, double* value) {
     uint64_t bits;
     memcpy(&bits, value, sizeof bits);
     transfer_bits(cursor, &bits, 8);
     memcpy(value, &bits, sizeof bits);
-    expect(cursor, isfinite(*value));
+    expect(cursor, part, isfinite(*value));
 }
 
 static void transfer_member(Cursor* cursor, const Member* member, FcSavedState* saved) {
     char* first = (char*)saved + member->offset;
-    cursor->part = member->part;
     for (int i = 0; i < member->count; i++) {
         if (member->kind == REAL) {
-            transfer_real(cursor, (double*)(void*)first + i);
+            transfer_real(cursor, member->part, (double*)(void*)first + i);
         } else {
             int* value = (int*)(void*)first + i;
             transfer_integer(cursor, value);
-            expect(cursor, member->kind == INTEGER || *value == 0 || *value == 1);
+            expect(cursor, member->part, member->kind == INTEGER || *value == 0 || *value == 1);
         }
     }
 }
 
 static bool mode_is_sound(const FcExperiment* experiment) {
+    const bool is_hybrid = experiment->interface == FC_MODEL_EXCHANGE;
     switch (experiment->mode) {
     case FC_INSTANTIATED:
     case FC_INITIALIZATION_MODE:
     case FC_TERMINATED:
-        return experiment->interface == FC_MODEL_EXCHANGE || experiment->interface == FC_CO_SIMULATION;
+        return is_hybrid || experiment->interface == FC_CO_SIMULATION;
     case FC_STEP_COMPLETE:
         return experiment->interface == FC_CO_SIMULATION;
-    case FC_EVENT_MODE:
-    case FC_CONTINUOUS_TIME_MODE:
-        return experiment->interface == FC_MODEL_EXCHANGE;
     default:
-        return false;
+        return is_hybrid &&
+               (experiment->mode == FC_EVENT_MODE || experiment->mode == FC_CONTINUOUS_TIME_MODE);
     }
 }
 
@@ -167,23 +161,19 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
     FcFrictionState* friction = &saved->friction;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
-        cursor->part = info->name;
         if (info->type == FC_TYPE_REAL) {
-            transfer_real(cursor, fc_variable_real(&friction->variables, info));
+            transfer_real(cursor, info->name, fc_variable_real(&friction->variables, info));
         } else {
             transfer_integer(cursor, fc_variable_integer(&friction->variables, info));
         }
-        expect(cursor, fc_variable_allows(info, fc_variable_value(&friction->variables, info)));
+        expect(cursor, info->name, fc_variable_allows(info, fc_variable_value(&friction->variables, info)));
     }
     for (int i = 0; i < MEMBER_COUNT; i++) {
         transfer_member(cursor, &MEMBERS[i], saved);
     }
-    cursor->part = OF_LAST_STEP;
-    expect(cursor, friction->slips >= -1 && friction->slips <= 1);
-    cursor->part = OF_MODEL_EXCHANGE;
-    expect(cursor, regime_is_sound(friction));
-    cursor->part = OF_INSTANCE;
-    expect(cursor, mode_is_sound(&saved->experiment));
+    expect(cursor, OF_LAST_STEP, friction->slips >= -1 && friction->slips <= 1);
+    expect(cursor, OF_MODEL_EXCHANGE, regime_is_sound(friction));
+    expect(cursor, OF_INSTANCE, mode_is_sound(&saved->experiment));
 }
 
 static size_t serialized_size(void) {

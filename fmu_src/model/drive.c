@@ -104,14 +104,22 @@ double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
     return linear(drive->V_y, t) + drive->vibration.V_2 * phase_across(drive, at_t).cosine;
 }
 
+// The velocity V of an input that vibrates by an amplitude; at its angle.
+static FcVelocity velocity(double V, FcLinearInput input, double amplitude, double omega, FcPhase at) {
+    const double acceleration = amplitude * omega;
+    return (FcVelocity){.V = V,
+                        .rate = input.rate - acceleration * at.sine,
+                        .curvature = -acceleration * omega * at.cosine,
+                        .third = acceleration * omega * omega * at.sine};
+}
+
+FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
+    return velocity(fc_drive_V_at_phase(drive, t, at_t), drive->V, drive->vibration.V_1, drive->omega, at_t);
+}
+
 FcVelocity fc_drive_velocity_y_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
-    const FcPhase across = phase_across(drive, at_t);
-    const double V_2 = drive->vibration.V_2;
-    const double omega = drive->omega;
-    return (FcVelocity){.V = fc_drive_V_y_at_phase(drive, t, at_t),
-                        .rate = drive->V_y.rate - V_2 * omega * across.sine,
-                        .curvature = -V_2 * omega * omega * across.cosine,
-                        .third = V_2 * omega * omega * omega * across.sine};
+    return velocity(fc_drive_V_y_at_phase(drive, t, at_t), drive->V_y, drive->vibration.V_2, drive->omega,
+                    phase_across(drive, at_t));
 }
 
 FcDrive fc_drive_across(const FcDrive* drive) {
@@ -151,27 +159,6 @@ double fc_drive_E(const FcDrive* drive, double t) { return fc_input_after(drive-
 
 double fc_drive_load(const FcDrive* drive, double t) { return fc_input_after(drive->load, t); }
 
-double fc_drive_E_growth(const FcDrive* drive, double t) {
-    return fabs(drive->E.rate) / fc_drive_E(drive, t);
-}
-
-double fc_drive_load_growth(const FcDrive* drive, double t) {
-    return fabs(drive->load.rate) / fc_drive_load(drive, t);
-}
-
-double fc_drive_V_rate(const FcDrive* drive, double t) {
-    return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
-}
-
-FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
-    const double V_1 = drive->vibration.V_1;
-    const double omega = drive->omega;
-    return (FcVelocity){.V = fc_drive_V_at_phase(drive, t, at_t),
-                        .rate = drive->V.rate - V_1 * omega * at_t.sine,
-                        .curvature = -V_1 * omega * omega * at_t.cosine,
-                        .third = V_1 * omega * omega * omega * at_t.sine};
-}
-
 FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
     return drive->vibration.V_1 == 0.0 ? (FcVelocity){.V = linear(drive->V, t), .rate = drive->V.rate}
                                        : fc_drive_velocity_at_phase(drive, t, fc_drive_phase(drive, t));
@@ -188,25 +175,9 @@ double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t) {
                                (at_t.sine * drive->cos_phase_d + at_t.cosine * drive->sin_phase_d);
 }
 
-double fc_drive_d_rate(const FcDrive* drive, double t) {
-    return fc_drive_d_rate_at_phase(drive, fc_drive_phase(drive, t));
-}
+double fc_input_least(FcLinearInput input, double h) { return fc_least(input.value, linear(input, h)); }
 
-double fc_drive_smallest_d(const FcDrive* drive, double h) {
-    return fc_least(drive->d.value, linear(drive->d, h)) - drive->vibration.a_d;
-}
-
-double fc_drive_largest_d(const FcDrive* drive, double h) {
-    return fc_most(drive->d.value, linear(drive->d, h)) + drive->vibration.a_d;
-}
-
-double fc_drive_smallest_E(const FcDrive* drive, double h) {
-    return fc_least(drive->E.value, linear(drive->E, h));
-}
-
-double fc_drive_largest_E(const FcDrive* drive, double h) {
-    return fc_most(drive->E.value, linear(drive->E, h));
-}
+double fc_input_most(FcLinearInput input, double h) { return fc_most(input.value, linear(input, h)); }
 
 double fc_drive_largest_speed(const FcDrive* drive, double h) {
     const double along = fc_most(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
@@ -320,18 +291,7 @@ static double angle_ahead(double now, double target, double least) {
     return ahead > least ? ahead : ahead + FC_TWO_PI;
 }
 
-static FcRootFunction V_of_root(void* drive, double t) {
-    const FcVelocity at = fc_drive_velocity(drive, t);
-    return (FcRootFunction){.value = at.V, .rate = at.rate, .curvature = at.curvature};
-}
-
-// Root of V in the bracket [t0, t1], on which V is monotone, to rounding.
-static double root_of_V(const FcDrive* drive, double t0, double t1) {
-    FcDrive at = *drive;
-    double evaluations = 0.0;
-    return fc_root(V_of_root, &at, t0, V_of_root(&at, t0), t1, V_of_root(&at, t1), 1e-6, INFINITY,
-                   &evaluations);
-}
+static double V_at(void* drive, double t) { return fc_drive_V(drive, t); }
 
 // Whether |V| dips below half of |V| + V_1 at t. A shallower dip is smooth enough to be stepped over.
 static bool is_dip(const FcDrive* drive, double t) {
@@ -350,12 +310,6 @@ static double angle_of_reversal(double V, double V_1) {
     return fabs(V) < AWAY_FROM_GRAZING * fabs(V_1) ? acos(-V / V_1) : 2.0 * atan(sqrt((V_1 + V) / (V_1 - V)));
 }
 
-static FcDriveEvent none_before(double end) { return (FcDriveEvent){.time = end}; }
-
-static FcDriveEvent event_at(double time, bool reversal) {
-    return (FcDriveEvent){.time = time, .reversal = reversal};
-}
-
 static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, double end) {
     const double V_1 = drive->vibration.V_1;
     const double V = drive->V.value;
@@ -365,10 +319,10 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
         const double root = angle_of_reversal(V, V_1);
         const double time =
             t + fc_least(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
-        return time < end ? event_at(time, true) : none_before(end);
+        return time < end ? (FcDriveEvent){time, true} : (FcDriveEvent){end, false};
     }
     const double time = t + angle_ahead(now, (V > 0.0) == (V_1 > 0.0) ? FC_PI : 0.0, least) / drive->omega;
-    return time < end && is_dip(drive, time) ? event_at(time, false) : none_before(end);
+    return time < end && is_dip(drive, time) ? (FcDriveEvent){time, false} : (FcDriveEvent){end, false};
 }
 
 // The largest |V| at the floating-point number next to a root t.
@@ -392,34 +346,34 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
             const double now = theta(drive, from);
             const double angle = asin(slope);
             const double least = least_ahead(now);
-            to = from + fc_least(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least)) /
-                            drive->omega;
-        }
-        const bool stops_at_end = !(to < end);
-        if (stops_at_end) {
-            to = end;
+            const double turns =
+                fc_least(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least));
+            to = fc_least(end, from + turns / drive->omega);
         }
         const double V_to = fc_drive_V(drive, to);
         if ((V_from < 0.0) != (V_to < 0.0)) {
-            return event_at(root_of_V(drive, from, to), true);
+            double evaluations = 0.0;
+            FcDrive at = *drive;
+            const double root = fc_root_between(V_at, &at, from, V_from, to, V_to, 0.0, 0.0, &evaluations);
+            return (FcDriveEvent){root, true};
         }
-        if (!stops_at_end && is_dip(drive, to)) {
-            return event_at(to, false);
+        if (to < end && is_dip(drive, to)) {
+            return (FcDriveEvent){to, false};
         }
         from = to;
         V_from = V_to;
     }
-    return none_before(end);
+    return (FcDriveEvent){end, false};
 }
 
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     assert(t >= 0.0 && end >= t);
     if (drive->vibration.V_1 == 0.0 && drive->V.rate == 0.0) {
-        return none_before(end);
+        return (FcDriveEvent){end, false};
     }
     if (drive->vibration.V_1 == 0.0) {
         const double root = -drive->V.value / drive->V.rate;
-        return root > t && root < end ? event_at(root, true) : none_before(end);
+        return root > t && root < end ? (FcDriveEvent){root, true} : (FcDriveEvent){end, false};
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
                                 : first_of_linear_vibration(drive, t, end);

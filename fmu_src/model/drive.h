@@ -31,6 +31,10 @@ typedef struct {
 // be many times the rest.
 double fc_input_after(FcLinearInput input, double t);
 
+// Bounds of an input over [0, h].
+double fc_input_least(FcLinearInput input, double h);
+double fc_input_most(FcLinearInput input, double h);
+
 typedef struct {
     FcLinearInput V;    // m/s
     FcLinearInput d;    // m
@@ -78,20 +82,12 @@ double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m
 // The drive whose V is V_y of this one, for the functions of V below.
 FcDrive fc_drive_across(const FcDrive* drive);
 
-double fc_drive_V(const FcDrive* drive, double t);           // m/s
-double fc_drive_V_y(const FcDrive* drive, double t);         // m/s
-double fc_drive_d(const FcDrive* drive, double t);           // m
-double fc_drive_E(const FcDrive* drive, double t);           // Pa
-double fc_drive_load(const FcDrive* drive, double t);        // N
-double fc_drive_E_growth(const FcDrive* drive, double t);    // 1/s, |E'| / E
-double fc_drive_load_growth(const FcDrive* drive, double t); // 1/s, |load'| / load
-double fc_drive_V_rate(const FcDrive* drive, double t);      // m/s2
-double fc_drive_d_rate(const FcDrive* drive, double t);      // m/s
+double fc_drive_V(const FcDrive* drive, double t);    // m/s
+double fc_drive_V_y(const FcDrive* drive, double t);  // m/s
+double fc_drive_d(const FcDrive* drive, double t);    // m
+double fc_drive_E(const FcDrive* drive, double t);    // Pa
+double fc_drive_load(const FcDrive* drive, double t); // N
 double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t);
-double fc_drive_smallest_d(const FcDrive* drive, double h);    // lower bound of d over [0, h]
-double fc_drive_largest_d(const FcDrive* drive, double h);     // upper bound of d over [0, h]
-double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of E over [0, h]
-double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h], in the plane
 
 // The time [s] in which a quantity with this rate and curvature, neither negative, moves by change: the root

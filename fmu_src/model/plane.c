@@ -2,12 +2,19 @@
 
 #include <math.h>
 
-#include "model/regime.h"
-
 void fc_plane_make(FcPlane* plane, const FcScene* scene) {
     plane->scene = scene;
     plane->on_line = !fc_drive_is_planar(&scene->drive);
-    plane->of_static_limit = fc_scene_of_bound(scene, 0, &plane->static_friction);
+    plane->static_friction = *scene->friction;
+    if (scene->friction->model != FC_COULOMB) { // whose contact may be open
+        plane->static_friction.model = FC_ELASTIC_PLASTIC;
+    }
+    const double ratio = fc_static_ratio(scene->friction);
+    plane->static_friction.mu *= ratio;
+    plane->static_friction.staticRatio = 1.0;
+    plane->of_static_limit = *scene;
+    plane->of_static_limit.F_C *= ratio;
+    plane->of_static_limit.friction = &plane->static_friction;
 }
 
 FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhase at_t) {
@@ -39,21 +46,38 @@ static bool is_kinetic(const FcPlane* plane, int slips) {
     return slips != 0 && fc_has_static_friction(plane->scene->friction);
 }
 
+static double limit_of_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips) {
+    return is_kinetic(plane, slips) ? at->limit : at->static_limit;
+}
+
 double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int slips) {
-    return (is_kinetic(plane, slips) ? at->limit : at->static_limit) / at->sigma;
+    return limit_of_bound(plane, at, slips) / at->sigma;
 }
 
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t) {
-    const FcLogRates rates = fc_scene_log_rates_at_phase(&plane->of_static_limit, t, at_t);
+    const FcLogRates rates = fc_scene_log_rates(&plane->of_static_limit, t, at_t);
     const double by_curve = is_kinetic(plane, slips) ? log_curve_rate(plane, at, t, at_t) : 0.0;
-    const double D = fc_plane_radius(plane, at, slips);
-    return (FcPlaneBound){.D = D, .rate = D * (rates.ratio + by_curve), .log_sigma_rate = rates.sigma};
+    const double limit = limit_of_bound(plane, at, slips);
+    const double D = limit / at->sigma;
+    return (FcPlaneBound){limit, D, D * (rates.ratio + by_curve), rates.sigma};
 }
 
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
                      FcVector n) {
-    const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
-    const double relaxed = relaxes ? at->sigma * at->speed / at->limit * bound->D : 0.0;
-    return fc_product(n, at->V) - relaxed - bound->rate;
+    return fc_product(n, at->V) - fc_plane_relaxation(plane, at) * bound->D - bound->rate;
+}
+
+FcPlaneBound fc_bound(const FcPlane* plane, int slips, double t) {
+    const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
+    const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
+    return fc_plane_bound(plane, &at, slips, t, phase);
+}
+
+double fc_push_at(void* context, double t) {
+    const FcPushed* of = context;
+    const FcPhase phase = fc_drive_phase(&of->plane->scene->drive, t);
+    const FcPlaneCoefficients at = fc_plane_coefficients(of->plane, t, phase);
+    const FcPlaneBound bound = fc_plane_bound(of->plane, &at, of->slips, t, phase);
+    return fc_plane_push(of->plane, &at, &bound, of->n);
 }

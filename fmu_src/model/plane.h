@@ -18,8 +18,14 @@ typedef struct {
 } FcVector;
 
 static inline double fc_product(FcVector a, FcVector b) { return a.x * b.x + a.y * b.y; }
+// a + factor b.
+static inline FcVector fc_plus(FcVector a, double factor, FcVector b) {
+    return (FcVector){a.x + factor * b.x, a.y + factor * b.y};
+}
 // |a| |b| times the sine of the angle from a to b.
 static inline double fc_across(FcVector a, FcVector b) { return a.x * b.y - a.y * b.x; }
+
+static inline FcVector fc_delta(FcBristle bristle) { return (FcVector){bristle.delta, bristle.delta_y}; }
 
 // Whether the contact moves or is deflected transversely.
 static inline bool fc_is_planar(const FcScene* scene, FcBristle bristle) {
@@ -45,6 +51,11 @@ typedef struct {
 } FcPlaneCoefficients;
 FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhase at_t);
 
+// r = sigma |V| / g [1/s] of Dahl and LuGre.
+static inline double fc_plane_relaxation(const FcPlane* plane, const FcPlaneCoefficients* at) {
+    return plane->scene->friction->model == FC_ELASTIC_PLASTIC ? 0.0 : at->sigma * at->speed / at->limit;
+}
+
 // The force [N] of Coulomb's law, g V / |V|; 0 if nothing moves.
 static inline FcVector fc_plane_coulomb(const FcPlaneCoefficients* at) {
     const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
@@ -56,16 +67,26 @@ double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int 
 
 // The bound with its rate, and the rate of ln sigma.
 typedef struct {
+    double limit;          // N
     double D;              // m
     double rate;           // m/s
     double log_sigma_rate; // 1/s
 } FcPlaneBound;
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t);
+FcPlaneBound fc_bound(const FcPlane* plane, int slips, double t); // at a local time [s]
 
 // The push: the velocity [m/s] at which a bristle on its bound, in the direction n (|n| = 1), would leave the
 // bound outwards. The bristle slips while the push is positive.
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
                      FcVector n);
+
+// The push as a function of time, for fc_root_between: context is an FcPushed.
+typedef struct {
+    const FcPlane* plane;
+    int slips;
+    FcVector n;
+} FcPushed;
+double fc_push_at(void* context, double t);
 
 #endif

@@ -22,26 +22,6 @@
 // means that it slips.
 typedef enum { FC_SLIPS_BACK = -1, FC_FREE = 0, FC_SLIPS_FORWARD = 1 } FcRegime;
 
-// The scene whose limit over sigma is the bound of a bristle that slips or sticks (FcBristle.slips), for a
-// bounded law. It points to *friction, which it sets.
-FcScene fc_scene_of_bound(const FcScene* scene, int slips, FcFriction* friction);
-
-// The bound D at a local time of such a scene, and its rate.
-double fc_bound(const FcScene* bound, double t);      // m
-double fc_bound_rate(const FcScene* bound, double t); // m/s
-
-// The push: the velocity [m/s] at which a bristle on the bound D of that side (1 or -1) would leave the bound
-// if it were free, relative to the bound. The bristle slips while the push is positive.
-double fc_push(const FcScene* scene, const FcScene* bound, double t, int side);
-
-// The push as a function of time, for fc_root_between: context is an FcPushed.
-typedef struct {
-    const FcScene* scene;
-    const FcScene* bound;
-    int side;
-} FcPushed;
-double fc_push_at(void* context, double t);
-
 // The part of its static bound by which a stuck bristle may exceed it without breaking away. Chosen
 // empirically: a few times the rounding of a bound and of the length of a deflection. A larger value delays
 // break-away.
@@ -67,17 +47,9 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 // bristle meets its bound, z[1] a slipping bristle is no longer pushed. 1 if there is no such event.
 void fc_regime_indicators(const FcScene* scene, FcRegime regime, FcBristle bristle, double z[2]);
 
-// fc_push at the start, on a line or in the plane, at any distance from the bound: in the direction of the
-// deflection, or along a line in that in which the bristle slips.
-double fc_push_in_plane(const FcScene* scene, FcBristle bristle);
-
-// The bound at a local time of a scene of fc_scene_of_bound, in the plane too.
-typedef struct {
-    double limit; // N
-    double D;     // m
-    double rate;  // m/s, D'
-} FcBound;
-FcBound fc_bound_in_plane(const FcScene* bound, double t);
+// The push at the start, at any distance from the bound: in the direction of the deflection, or along a line in
+// that in which the bristle slips.
+double fc_push(const FcScene* scene, FcBristle bristle);
 
 // Time derivatives of the states.
 typedef struct {
@@ -91,6 +63,11 @@ typedef struct {
     FcVector force; // N, (F_t, F_y)
     FcStateRates rates;
 } FcMotion;
+
+static inline bool fc_motion_is_finite(const FcMotion* of) {
+    return isfinite(of->force.x) && isfinite(of->force.y) && isfinite(of->rates.delta) &&
+           isfinite(of->rates.delta_y) && isfinite(of->rates.W_f) && isfinite(of->rates.Q_f);
+}
 
 // FC_FREE for a law without a bound; Coulomb's force has no regime.
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle);

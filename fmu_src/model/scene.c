@@ -4,9 +4,9 @@
 
 #include "model/extremes.h"
 
-// The mean separation [m] of the surfaces at the time t, with contact.input = Load.
-static double rest_separation(const FcScene* scene, const FcContactAtModulus* at_E, double t) {
-    return (log(at_E->load_0 / fc_drive_load(&scene->drive, t)) + scene->log_swell) / at_E->decay;
+// The mean separation [m] of the surfaces under a load, which is load_0 at d = 0.
+static double rest_separation(const FcScene* scene, double load_0, double load) {
+    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
 }
 
 static bool follows_load(const FcScene* scene) { return scene->contact->input == FC_CONTACT_LOAD; }
@@ -50,8 +50,9 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     }
     scene.is_open = !(drive->load.value > NOTHING);
     scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
-    scene.drive.d =
-        (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
+    const bool rests = !scene.floats && !scene.is_open;
+    scene.drive.d.value = rests ? rest_separation(&scene, at_E->load_0, drive->load.value) : 0.0;
+    scene.drive.d.rate = 0.0;
     return scene;
 }
 
@@ -126,7 +127,8 @@ FcScene fc_scene_from(const FcScene* scene, double t) {
 
 // The separation at t; driven is the drive's part.
 static double separation(const FcScene* scene, const FcContactAtModulus* at_E, double driven, double t) {
-    return scene->floats ? driven + rest_separation(scene, at_E, t) : driven;
+    return scene->floats ? driven + rest_separation(scene, at_E->load_0, fc_drive_load(&scene->drive, t))
+                         : driven;
 }
 
 static double d_at_phase(const FcScene* scene, double t, FcPhase at_t) {
@@ -196,69 +198,52 @@ double fc_scene_stiffness(const FcScene* scene, double t) {
     return fc_contact_stiffness(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
 }
 
-FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t) {
+FcLogRates fc_scene_log_rates(const FcScene* scene, double t, FcPhase at_t) {
+    if (!fc_scene_depends_on_d(scene)) {
+        return (FcLogRates){0.0, 0.0};
+    }
     const FcDrive* drive = &scene->drive;
-    FcLogRates rates = {0.0, 0.0, 0.0};
-    if (fc_scene_depends_on_d(scene)) {
-        const double d_rate = d_rate_at_phase(scene, t, at_t);
-        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
-        rates.sigma = by_d.sigma * d_rate;
-        rates.limit = by_d.F_n * d_rate;
-        rates.ratio = (by_d.F_n - by_d.sigma) * d_rate;
-        if (drive->E.rate != 0.0) {
-            const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t));
-            rates.sigma += by_E.sigma * drive->E.rate;
-            rates.limit += by_E.F_n * drive->E.rate;
-            rates.ratio += (by_E.F_n - by_E.sigma) * drive->E.rate;
-        }
-        if (scene->floats) { // the surfaces follow the load: the effect of E on F_n cancels, also in rounding
-            rates.limit =
-                drive->load.rate / fc_drive_load(drive, t) + by_d.F_n * fc_drive_d_rate_at_phase(drive, at_t);
-        }
-        if (!fc_limit_follows_load(scene->friction)) {
-            rates.limit = 0.0;
-            rates.ratio = -rates.sigma;
-        } else if (rates.sigma == 0.0) {
-            rates.ratio = rates.limit;
-        }
+    const double d_rate = d_rate_at_phase(scene, t, at_t);
+    const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
+    double sigma = by_d.sigma * d_rate;
+    double limit = by_d.F_n * d_rate;
+    double ratio = (by_d.F_n - by_d.sigma) * d_rate;
+    if (drive->E.rate != 0.0) {
+        const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t));
+        sigma += by_E.sigma * drive->E.rate;
+        limit += by_E.F_n * drive->E.rate;
+        ratio += (by_E.F_n - by_E.sigma) * drive->E.rate;
     }
-    if (fc_has_stribeck_curve(scene->friction)) {
-        const FcVelocity at = fc_drive_velocity_at_phase(drive, t, at_t);
-        const double by_V = fc_stribeck_slope(scene->friction, at.V) / fc_stribeck(scene->friction, at.V);
-        rates.limit += by_V * at.rate;
-        rates.ratio += by_V * at.rate;
+    if (scene->floats) { // the surfaces follow the load: the effect of E on F_n cancels, also in rounding
+        limit = drive->load.rate / fc_drive_load(drive, t) + by_d.F_n * fc_drive_d_rate_at_phase(drive, at_t);
     }
-    return rates;
-}
-
-FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
-    return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
-}
-
-// Bounds of the mean separation.
-static double smallest_rest(const FcScene* scene, double h) {
-    const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fc_least(scene->at_E.load_0, end.load_0);
-    const double load = fc_most(scene->drive.load.value, fc_drive_load(&scene->drive, h));
-    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
-}
-
-static double largest_rest(const FcScene* scene, double h) {
-    const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fc_most(scene->at_E.load_0, end.load_0);
-    const double load = fc_least(scene->drive.load.value, fc_drive_load(&scene->drive, h));
-    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
+    if (!fc_limit_follows_load(scene->friction)) {
+        ratio = -sigma;
+    } else if (sigma == 0.0) {
+        ratio = limit;
+    }
+    return (FcLogRates){sigma, ratio};
 }
 
 double fc_scene_smallest_d(const FcScene* scene, double h) {
     assert(h >= 0.0);
-    const double driven = fc_drive_smallest_d(&scene->drive, h);
-    return scene->floats ? driven + smallest_rest(scene, h) : driven;
+    const FcDrive* drive = &scene->drive;
+    double d = fc_input_least(drive->d, h) - drive->vibration.a_d;
+    if (scene->floats) {
+        d += rest_separation(scene, fc_least(scene->at_E.load_0, contact_at(scene, h).load_0),
+                             fc_most(drive->load.value, fc_drive_load(drive, h)));
+    }
+    return d;
 }
 
 static double largest_d(const FcScene* scene, double h) {
-    const double driven = fc_drive_largest_d(&scene->drive, h);
-    return scene->floats ? driven + largest_rest(scene, h) : driven;
+    const FcDrive* drive = &scene->drive;
+    double d = fc_input_most(drive->d, h) + drive->vibration.a_d;
+    if (scene->floats) {
+        d += rest_separation(scene, fc_most(scene->at_E.load_0, contact_at(scene, h).load_0),
+                             fc_least(drive->load.value, fc_drive_load(drive, h)));
+    }
+    return d;
 }
 
 double fc_scene_largest_stiffness(const FcScene* scene, double h) {

@@ -97,15 +97,13 @@ static inline double fc_relaxation_rate(const FcCoefficients* at) {
     return at->sigma * fabs(at->V) / at->limit;
 }
 
-// Time derivatives of ln(sigma), ln(g) and ln(g / sigma) [1/s], the last without cancellation; 0 for a
-// quantity that has become 0.
+// Time derivatives of ln(sigma) and ln(g / sigma) [1/s] without the Stribeck curve, the second without cancellation; 0
+// for a quantity that has become 0.
 typedef struct {
     double sigma;
-    double limit;
     double ratio;
 } FcLogRates;
-FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
-FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t);
+FcLogRates fc_scene_log_rates(const FcScene* scene, double t, FcPhase at_t);
 
 // Bounds over [0, h], h [s] >= 0.
 double fc_scene_smallest_d(const FcScene* scene, double h);          // m

@@ -214,7 +214,7 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     solver->start = t;
     const FcScene scene = scene_at(solver, 0.0);
     fc_take_onto_bound(&scene, now);
-    const bool slips = now->slips != 0 && fc_push_in_plane(&scene, fc_bristle_of(now)) > 0.0;
+    const bool slips = now->slips != 0 && fc_push(&scene, fc_bristle_of(now)) > 0.0;
     now->slips = slips ? now->slips : 0; // at the event of a push of 0
     solver->slips = now->slips;
     solver->regime = fc_regime(&scene, fc_bristle_of(now));

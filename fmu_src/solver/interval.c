@@ -20,7 +20,7 @@ FcPace fc_pace(const FcScene* scene, double h) {
     const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
     const double by_decay = 2.0 * scene->at_E.decay;
     const double by_nearness = 3.0 / fc_scene_smallest_d(scene, h);
-    const double by_E = fabs(drive->E.rate) / fc_drive_smallest_E(drive, h);
+    const double by_E = fabs(drive->E.rate) / fc_input_least(drive->E, h);
     pace.log_sigma = (by_decay + by_nearness) * d_rate + BY_E * by_E;
     if (scene->floats) {
         // d ln F_n / d ln E is below 2. Floating surfaces move by the change of ln F_n and of ln load, over

@@ -301,7 +301,7 @@ FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, FcBristle 
     const int slips = fc_is_planar(scene, bristle) ? 1 : side;
     if (drops(&ramp)) {
         bristle.slips = slips;
-        ramp.pushed = fc_push_in_plane(scene, bristle) > 0.0;
+        ramp.pushed = fc_push(scene, bristle) > 0.0;
         if (past->ratio == 1.0) { // then no state tells whether it slips
             ramp.slips = ramp.along > 0.0 && delta >= (1.0 - FC_INSIDE_BOUND) * at_place(&ramp, 0.0).D;
         }

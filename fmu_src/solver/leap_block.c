@@ -61,9 +61,9 @@ static FcScene scene_at(const Block* block, double k) {
 
 // The bristle on the bound of that side at the start of a scene.
 static FcBristle on_bound(const FcScene* scene, int side) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, side, &friction);
-    return (FcBristle){.delta = side * fc_bound(&bound, 0.0),
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    return (FcBristle){.delta = side * fc_bound(&plane, side, 0.0).D,
                        .slips = fc_has_static_friction(scene->friction) ? side : 0};
 }
 
@@ -275,9 +275,10 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
     const double at_a = fc_push_at(&push, a);
     const double at_b = fc_push_at(&push, b);
     *evaluations += 2.0;
-    return push.scene->drive.vibration.a_d != 0.0 && at_a * at_b < 0.0
+    const FcDrive* drive = &push.plane->scene->drive;
+    return drive->vibration.a_d != 0.0 && at_a * at_b < 0.0
                ? fc_root_between(fc_push_at, &push, a, at_a, b, at_b, 0.0, 0.0, evaluations)
-               : fc_drive_next_event(&push.scene->drive, a, b).time;
+               : fc_drive_next_event(drive, a, b).time;
 }
 
 // The distance of both bounds less the way of the bristle from the one that it leaves to the other [m], in period k of
@@ -286,10 +287,8 @@ static double distance_less_way(const Block* block, double k) {
     const FcScene scene =
         scene_at(block, fc_least(k, block->of->count - 2.0)); // up to two periods are looked at
     const int side = block->of->side;
-    FcFriction friction;
-    FcFriction other_friction;
-    const FcScene bound = fc_scene_of_bound(&scene, side, &friction);
-    const FcScene other = fc_scene_of_bound(&scene, 0, &other_friction);
+    FcPlane plane;
+    fc_plane_make(&plane, &scene);
     // The vibration opposes the slip most half a period after the start of the scene or later.
     const FcDrive* drive = &scene.drive;
     const FcPhase phase = fc_drive_phase(drive, 0.0);
@@ -297,10 +296,10 @@ static double distance_less_way(const Block* block, double k) {
     const double half = 0.5 * block->period;
     const double opposed = half + (turns + 0.5 - floor(turns + 0.5)) * block->period;
     const double leaves =
-        turn_of((FcPushed){&scene, &bound, side}, opposed - half, opposed, block->evaluations);
+        turn_of((FcPushed){&plane, side, {side, 0.0}}, opposed - half, opposed, block->evaluations);
     const double nears =
-        turn_of((FcPushed){&scene, &other, -side}, opposed, opposed + half, block->evaluations);
-    return fc_bound(&bound, leaves) + fc_bound(&other, nears) -
+        turn_of((FcPushed){&plane, 0, {-side, 0.0}}, opposed, opposed + half, block->evaluations);
+    return fc_bound(&plane, side, leaves).D + fc_bound(&plane, 0, nears).D -
            fabs(fc_drive_displacement(drive, leaves, nears));
 }
 
@@ -361,9 +360,9 @@ static Rooms rooms_of(const Block* block) {
     }
     for (int i = 0; i * rooms.stride < block->of->count + rooms.stride; i++) {
         const FcScene scene = scene_at(block, fc_least(i * rooms.stride, block->of->count - 1.0));
-        FcFriction friction;
-        const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
-        rooms.D[i] = fc_scene_smallest_saturation(&bound, block->period);
+        FcPlane plane;
+        fc_plane_make(&plane, &scene);
+        rooms.D[i] = fc_scene_smallest_saturation(&plane.of_static_limit, block->period);
     }
     return rooms;
 }
@@ -399,8 +398,8 @@ enum { PHASES = 8 };
 // A bristle that sticks in the whole block: its first scene, and that of its bound.
 typedef struct {
     const Block* block;
-    FcScene first, bound;
-    FcFriction bound_law;
+    FcScene first;
+    FcPlane plane;
     FcDrive across;
 } Stuck;
 
@@ -415,7 +414,7 @@ static FcBristle stuck_at(const Stuck* of, double t) {
 static double room_of_stuck(const Stuck* of, double k, double phase) {
     const double t = fc_least(fc_most(0.0, k + phase), of->block->of->count) * of->block->period;
     *of->block->evaluations += 1.0;
-    return fc_bound(&of->bound, t) - fc_size(stuck_at(of, t));
+    return fc_bound(&of->plane, 0, t).D - fc_size(stuck_at(of, t));
 }
 
 // The least room of period k: that at the vertex of a parabola through three times.
@@ -438,7 +437,7 @@ static double least_room(const Stuck* of, double k) {
 // those beside it. It has no room, by estimate, in these places.
 static bool meets_while_stuck(const Block* block, const Place* without_room, int places) {
     Stuck of = {.block = block, .first = scene_at(block, 0.0)};
-    of.bound = fc_scene_of_bound(&of.first, 0, &of.bound_law);
+    fc_plane_make(&of.plane, &of.first);
     of.across = fc_drive_across(&of.first.drive);
     double part = 0.0;
     double least = HUGE_VAL;

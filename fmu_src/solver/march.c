@@ -209,7 +209,7 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
 }
 
 bool fc_march_may_meet(const FcScene* scene) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, 0, &friction); // of the static limit, without a curve
-    return may_meet(scene, &bound);
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    return may_meet(scene, &plane.of_static_limit);
 }

@@ -82,13 +82,13 @@ static double edge_of(Walk* walk, int side) {
         return *edge;
     }
     const FcMap* map = &walk->free_map;
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
-    const double farthest = side * fc_bound(&bound, 0.0);
+    FcPlane plane;
+    fc_plane_make(&plane, walk->scene);
+    const double farthest = side * fc_bound(&plane, 0, 0.0).D;
     FcStepResult end = {.delta = farthest, .evaluations = walk->total.evaluations};
     // With static friction the bound that is met is the one without the drop.
     const bool drops = fc_has_static_friction(walk->scene->friction);
-    fc_march_step(drops ? &bound : walk->scene, walk->options, walk->period, &end);
+    fc_march_step(drops ? &plane.of_static_limit : walk->scene, walk->options, walk->period, &end);
     walk->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
     const double room = side * (end.delta - map->offset);
@@ -150,9 +150,9 @@ static double free_periods_by_steps(Walk* walk, double left) {
     const FcMap map = free_map_of(walk);
     const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
-    if (map.relaxation == 0.0 ? moved == 0.0 : moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0)) {
+    FcPlane plane;
+    fc_plane_make(&plane, walk->scene);
+    if (map.relaxation == 0.0 ? moved == 0.0 : moved <= ROUNDING_OF_EDGE * fc_bound(&plane, 0, 0.0).D) {
         return map.relaxation > 0.0 && meets_after(walk, 0.0) ? 0.0 : left;
     }
     if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {

@@ -127,7 +127,7 @@ static void check_by_walking(const FcDrive* drive, double end, int walked) {
             const double root = all.reversal[k++];
             CHECK(root > t - 2.0 * end / walked && root <= t + 1e-15);
             const double rounding = 4e-16 * drive->vibration.V_1 + 4e-16 * fabs(drive->V.rate * end) + 1e-15;
-            const double slope = fabs(fc_drive_V_rate(drive, root));
+            const double slope = fabs(fc_drive_velocity(drive, root).rate);
             CHECK_WITHIN(fc_drive_V(drive, root), 0.0, rounding + 4e-16 * end * slope);
         }
         before = now;
