@@ -316,7 +316,7 @@ static double first_turn(const View* view, int side, double start, double period
         const double next = fc_least(end, t + part_of_period(view, t, period));
         const double after = fc_push_at(&of, next);
         if (before > 0.0 && after <= 0.0) {
-            return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, 0.0, &evaluations);
+            return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, &evaluations);
         }
         before = after;
         t = next;

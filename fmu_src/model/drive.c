@@ -354,7 +354,7 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
         if ((V_from < 0.0) != (V_to < 0.0)) {
             double evaluations = 0.0;
             FcDrive at = *drive;
-            const double root = fc_root_between(V_at, &at, from, V_from, to, V_to, 0.0, 0.0, &evaluations);
+            const double root = fc_root_between(V_at, &at, from, V_from, to, V_to, 0.0, &evaluations);
             return (FcDriveEvent){root, true};
         }
         if (to < end && is_dip(drive, to)) {

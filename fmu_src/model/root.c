@@ -12,7 +12,7 @@
 enum { MOST_ROOT_STEPS = 200 };
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
-                       double at_b, double close, double least_area, double* evaluations) {
+                       double at_b, double close, double* evaluations) {
     const double rounding = DBL_EPSILON * fc_most(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;
@@ -26,7 +26,7 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
     for (int i = 0; i < MOST_ROOT_STEPS; i++) {
         const bool on_side = (at_near < 0.0) == ends_negative;
         const double width = fabs(near - far);
-        const bool is_close = fabs(at_near) <= close || fabs(at_near) * width <= least_area;
+        const bool is_close = fabs(at_near) <= close;
         if (at_near == 0.0 || (on_side && is_close) || width <= rounding) {
             break;
         }

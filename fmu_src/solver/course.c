@@ -59,7 +59,7 @@ static bool has_least_where_up(FcDrive* drive, Sample a, Sample b, double* cente
     if (!(a.rate < 0.0 && b.rate >= 0.0 && a.bend + b.bend >= 0.0)) {
         return false;
     }
-    *center = fc_root_between(rate_of_square, drive, a.t, a.rate, b.t, b.rate, 0.0, 0.0, &none);
+    *center = fc_root_between(rate_of_square, drive, a.t, a.rate, b.t, b.rate, 0.0, &none);
     return true;
 }
 
@@ -69,7 +69,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
         return has_least_where_up(drive, a, b, center);
     }
     double none = 0.0;
-    const double turn = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, 0.0, &none);
+    const double turn = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, &none);
     Sample flat = sample_at(drive, turn);
     flat.bend = 0.0;
     return a.bend > 0.0 ? has_least_where_up(drive, a, flat, center)
@@ -94,8 +94,8 @@ static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
         // Between two minima it bends down, most where the twist changes sign.
         if (a.twist < 0.0 && b.twist > 0.0) {
             double none = 0.0;
-            const Sample between = sample_at(&drive, fc_root_between(twist_of_square, &drive, a.t, a.twist,
-                                                                     b.t, b.twist, 0.0, 0.0, &none));
+            const Sample between = sample_at(
+                &drive, fc_root_between(twist_of_square, &drive, a.t, a.twist, b.t, b.twist, 0.0, &none));
             if (between.bend < 0.0) {
                 count += has_least(&drive, a, between, &times[count]);
                 a = between;

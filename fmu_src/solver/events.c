@@ -21,14 +21,11 @@ static const double LITTLE_PUSH = 1e-9;
 // to it, or half of it.
 enum { MOST_CUTS = 40 };
 
-// ---- the push at a time ----
+// ---- the push of a bristle that slips ----
 
-// The push at a time of a bristle that slips in the direction n.
-static double push_at(const FcCrossing* crossing, FcVector n, double t) {
-    const FcPhase phase = fc_drive_phase(&crossing->interval->scene->drive, t);
-    const FcPlaneCoefficients at = fc_plane_coefficients(crossing->plane, t, phase);
-    const FcPlaneBound bound = fc_plane_bound(crossing->plane, &at, 1, t, phase);
-    return fc_plane_push(crossing->plane, &at, &bound, n);
+static FcVector direction(FcVector delta) {
+    const double size = hypot(delta.x, delta.y);
+    return size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
 }
 
 // The rounding of a push that is known at the points; the curve may move the bound faster than the limit does.
@@ -43,20 +40,15 @@ static double rounding_of_push(const FcCrossing* crossing, const double push[POI
 bool fc_falls_behind(const FcCrossing* crossing, FcVector n) {
     const FcInterval* interval = crossing->interval;
     const double t = crossing->at.t;
-    const double push = push_at(crossing, n, t);
+    FcPushed pushed = {crossing->plane, 1, n};
+    const double push = fc_push_at(&pushed, t);
     if (fabs(push) > ROUNDING_OF_PUSH * fc_largest_push(crossing)) {
         return push < 0.0;
     }
     const FcVelocity now = fc_drive_velocity(&interval->scene->drive, t);
     const double time = fc_least(fc_smooth_time(&interval->pace),
                                  fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
-    return push_at(crossing, n, t + 1e-6 * fc_least(time, interval->duration - t)) < 0.0;
-}
-
-static FcVector direction_of(const FcCrossing* crossing) {
-    const FcVector delta = fc_crossing_delta(crossing);
-    const double size = hypot(delta.x, delta.y);
-    return size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
+    return fc_push_at(&pushed, t + 1e-6 * fc_least(time, interval->duration - t)) < 0.0;
 }
 
 // ---- the begin and the end of a slip ----
@@ -67,7 +59,7 @@ bool fc_begin_slip(FcCrossing* crossing, bool surely) {
     const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
     const FcPlaneBound held = fc_plane_bound(plane, &at, crossing->slips, t, phase);
-    const FcVector n = direction_of(crossing);
+    const FcVector n = direction(fc_crossing_delta(crossing));
     const double push = fc_plane_push(plane, &at, &held, n);
     if (!surely && !(push > ROUNDING_OF_PUSH * fc_largest_push(crossing))) {
         return false;
@@ -183,8 +175,8 @@ static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, doubl
         const double b = u + (0.5 + FC_RADAU.node[i]) * h;
         if (b >= u + meets * h && f[i] > over) {
             *is_exact = true;
-            const double root = fc_root_between(stuck_to_bound, crossing, a, at_a, b, f[i], over, 0.0,
-                                                &crossing->evaluations);
+            const double root =
+                fc_root_between(stuck_to_bound, crossing, a, at_a, b, f[i], over, &crossing->evaluations);
             return (root - u) / h;
         }
         a = b;
@@ -212,11 +204,9 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
     for (int cuts = 0;; cuts++) {
         double push[POINTS];
         for (int i = 0; i < POINTS; i++) {
-            const FcVector delta = panel->delta[i];
-            const double size = fc_most(hypot(delta.x, delta.y), DBL_MIN);
             const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
             const FcPlaneBound bound = fc_plane_bound(crossing->plane, &at, 1, nodes->t[i], nodes->phase[i]);
-            push[i] = fc_plane_push(crossing->plane, &at, &bound, (FcVector){delta.x / size, delta.y / size});
+            push[i] = fc_plane_push(crossing->plane, &at, &bound, direction(panel->delta[i]));
         }
         const double ends = end_of_push(crossing, push);
         if (ends > 1.0 - LITTLE_PUSH ||
@@ -260,7 +250,7 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
 
 void fc_free_until_event(FcCrossing* crossing) {
     assert(!crossing->is_slipping);
-    if (crossing->slips != 0 && fc_falls_behind(crossing, direction_of(crossing))) {
+    if (crossing->slips != 0 && fc_falls_behind(crossing, direction(fc_crossing_delta(crossing)))) {
         fc_end_slip(crossing);
         return;
     }
@@ -324,7 +314,7 @@ void fc_slip_until_event(FcCrossing* crossing) {
     double ends = end_of_push(crossing, panel.to_bound);
     if (ends > 0.0 && !crossing->is_stalled &&
         panel.to_bound[START] <= rounding_of_push(crossing, panel.to_bound) &&
-        fc_falls_behind(crossing, direction_of(crossing))) {
+        fc_falls_behind(crossing, direction(fc_crossing_delta(crossing)))) {
         ends = 0.0;
     }
     const bool is_cut = cut_at_end_of_push(crossing, &nodes, &panel, &h, &ends);

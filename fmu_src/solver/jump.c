@@ -138,7 +138,7 @@ static void follow(Ramp* ramp, double a, double b) {
     ramp->sought = ramp->delta;
     const double at_a = above_bound(ramp, a);
     const double from =
-        at_a < 0.0 ? fc_root_between(above_bound, ramp, a, at_a, b, ramp->delta - end.D, 0.0, 0.0, &none) : a;
+        at_a < 0.0 ? fc_root_between(above_bound, ramp, a, at_a, b, ramp->delta - end.D, 0.0, &none) : a;
     for (int i = 0; i < FC_STAGES; i++) {
         const Place at = at_place(ramp, from + (0.5 + FC_RADAU.node[i]) * (b - from));
         // With its sign, so that a shallow rise that is not seen cancels its fall.
@@ -195,7 +195,7 @@ static double next_stop(Ramp* ramp, double s, double step) {
         return next;
     }
     double none = 0.0;
-    const double turn = fc_root_between(bound_rate, ramp, s, rate, next, rate_next, 0.0, 0.0, &none);
+    const double turn = fc_root_between(bound_rate, ramp, s, rate, next, rate_next, 0.0, &none);
     return turn > s + 1e-9 ? turn : next;
 }
 
@@ -246,7 +246,7 @@ static double stick_from(Ramp* ramp, double s) {
         const double next = next_stop(ramp, s, step);
         const double at_next = above_bound(ramp, next);
         if (at_next > 0.0) {
-            s = at_s < 0.0 ? fc_root_between(above_bound, ramp, s, at_s, next, at_next, 0.0, 0.0, &none) : s;
+            s = at_s < 0.0 ? fc_root_between(above_bound, ramp, s, at_s, next, at_next, 0.0, &none) : s;
             break;
         }
         s = next;

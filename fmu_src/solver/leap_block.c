@@ -277,7 +277,7 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
     *evaluations += 2.0;
     const FcDrive* drive = &push.plane->scene->drive;
     return drive->vibration.a_d != 0.0 && at_a * at_b < 0.0
-               ? fc_root_between(fc_push_at, &push, a, at_a, b, at_b, 0.0, 0.0, evaluations)
+               ? fc_root_between(fc_push_at, &push, a, at_a, b, at_b, 0.0, evaluations)
                : fc_drive_next_event(drive, a, b).time;
 }
 

@@ -29,8 +29,7 @@ static double value_at(void* points, double x) {
 static double root_between(double* f, double a, double b, double at_b) {
     const double at_a = a == 0.0 ? f[START] : value_at(f, a);
     double none = 0.0;
-    return at_a < 0.0 ? fc_root_between(value_at, f, a, at_a, b, at_b, 0.0, 0.0, &none)
-                      : a + 0x1p-50 * (b - a);
+    return at_a < 0.0 ? fc_root_between(value_at, f, a, at_a, b, at_b, 0.0, &none) : a + 0x1p-50 * (b - a);
 }
 
 // Four numbers side by side, if the processor can: else they are two pairs.

@@ -88,8 +88,7 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
         return true;
     }
     WayToBound of = {drive, t, *way, side};
-    *end = fc_root_between(past_bound, &of, t, -*way, *end, moves - *way, 1e-10 * D, 0.0,
-                           &crossing->evaluations);
+    *end = fc_root_between(past_bound, &of, t, -*way, *end, moves - *way, 1e-10 * D, &crossing->evaluations);
     return true;
 }
 
