@@ -3,8 +3,6 @@
 #include <assert.h>
 #include <math.h>
 
-FcMap fc_map_identity(void) { return (FcMap){0}; }
-
 // relaxation is 1 - P. Composing it instead of P keeps its digits if hardly anything relaxes.
 void fc_map_append(FcMap* map, const FcMap* next) {
     const double kept = 1.0 - map->relaxation;
@@ -25,7 +23,7 @@ void fc_map_append(FcMap* map, const FcMap* next) {
 // By repeated squaring. Composing adds no error that grows with n, so P near 1 needs no special care.
 FcMap fc_map_power(const FcMap* one, double n) {
     assert(n >= 0.0 && n == floor(n));
-    FcMap power = fc_map_identity();
+    FcMap power = {0}; // the identity
     FcMap square = *one;
     while (n >= 1.0) {
         if (fmod(n, 2.0) == 1.0) {

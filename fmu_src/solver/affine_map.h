@@ -22,7 +22,6 @@ typedef struct {
     double heat_offset;    // J
 } FcMap;
 
-FcMap fc_map_identity(void);
 void fc_map_append(FcMap* map, const FcMap* next); // the map, then the next one
 FcMap fc_map_power(const FcMap* one, double n);    // n a non-negative whole number
 

@@ -98,22 +98,6 @@ static double transient_at(const FcControl* control, const FcPart* part, const F
     return fc_least(behind, MOST_BEHIND);
 }
 
-// The time in which a stuck bristle moves by FC_MOST_OF_BOUND radii of its bound.
-static double span_of_stuck(const FcControl* control, const FcReached* at) {
-    const FcInterval* interval = control->interval;
-    const FcDrive* drive = &interval->scene->drive;
-    const FcPhase phase = fc_drive_phase(drive, at->t);
-    const FcVelocity x = fc_drive_velocity_at_phase(drive, at->t, phase);
-    const FcVelocity y =
-        control->plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, at->t, phase);
-    const double speed = hypot(x.V, y.V);
-    const double D = at->per_path > 0.0 ? 1.0 / at->per_path : interval->saturation;
-    const double bend = hypot(x.rate, y.rate);
-    const double soon =
-        speed + bend > 0.0 && D > 0.0 ? fc_time_to_move(speed, bend, FC_MOST_OF_BOUND * D) : 0.0;
-    return soon > 0.0 ? soon : INFINITY;
-}
-
 // The part of the force that is not smooth in t, over the force: a transient, the lag behind sigma and g, and the Stribeck
 // curve; in the plane all of it, since it turns.
 static double part_not_smooth(const FcControl* control, const FcReached* at, FcKind kind, double behind,
@@ -166,9 +150,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     const double z = relaxes ? most_relaxation(behind) : INFINITY;
     double span = control->span;
     double longest = control->longest;
-    if (kind == FC_STICKS && control->is_bounded) {
-        span = fc_least(span, span_of_stuck(control, at));
-    } else if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
+    if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
         // A settled force is constant but for its lag, and the integrals of the constant are exact.
         const double lag = lag_for(control, in, x < 0.0 ? 0.0 : at->rate);
         const double part_of_lag = fc_most(control->interval->tolerance, fc_least(1.0, lag));

@@ -24,7 +24,6 @@ typedef struct {
     double span;          // s, the longest panel if the force is of the size of the limit
     double longest;       // the same in u
     bool settles;         // along a line, to a constant force
-    bool is_bounded;      // meetings with the bound count
 } FcControl;
 
 // A panel that was refused so often in a row is accepted: 0.3^12 of its length, at which rounding limits it.

@@ -78,7 +78,7 @@ static bool lies_on_bound(const Block* block, double k, double delta) {
 // A period of a scene from a bristle.
 static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
     FcStepResult result = fc_result_from(start, *block->evaluations);
-    fc_march_step(scene, block->of->options, block->period, &result);
+    fc_take_pieces(scene, block->of->options, block->period, &result);
     *block->evaluations = result.evaluations;
     return result;
 }
@@ -88,9 +88,7 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     FcBristle bristle = block->start;
     for (int before = periods; before > 0; before--) {
         const FcScene scene = scene_at(block, k - before);
-        FcStepResult result = fc_result_from(bristle, *block->evaluations);
-        fc_take_pieces(&scene, block->of->options, block->period, &result);
-        *block->evaluations = result.evaluations;
+        const FcStepResult result = take_period(block, &scene, bristle);
         bristle = fc_bristle_of(&result);
     }
     return bristle;
@@ -263,13 +261,6 @@ static double periods_of_part(const Block* block) {
     return fc_most(1.0, floor(block->of->count / MOST_PARTS));
 }
 
-// Whether the periods are those of a bristle that slips in ElasticPlastic while V reverses.
-static bool slips_between_reversals(const Block* block) {
-    const FcScene scene = scene_at(block, 0.0);
-    return scene.friction->model == FC_ELASTIC_PLASTIC && block->of->side != 0 &&
-           fabs(scene.drive.V.value) < scene.drive.vibration.V_1;
-}
-
 // The time between a and b at which the push turns. If d does not vibrate, that is nearly the reversal of V.
 static double turn_of(FcPushed push, double a, double b, double* evaluations) {
     const double at_a = fc_push_at(&push, a);
@@ -304,8 +295,14 @@ static double distance_less_way(const Block* block, double k) {
 }
 
 // Whether the block also foretells the period in which a slip along the other bound is most likely to begin or to
-// cease between its points: that in which the distance less way passes 0, or else an extreme one.
+// cease between its points: that in which the distance less way passes 0, or else an extreme one. In ElasticPlastic, while V
+// reverses; else there is none.
 static bool foretells_slips(const Block* block) {
+    const FcScene first = scene_at(block, 0.0);
+    if (block->of->side == 0 || first.friction->model != FC_ELASTIC_PLASTIC ||
+        fabs(first.drive.V.value) >= first.drive.vibration.V_1) {
+        return true;
+    }
     const double stride = periods_of_part(block);
     double before[2] = {distance_less_way(block, 0.0), distance_less_way(block, stride)};
     double at = 0.0;
@@ -483,7 +480,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     if (of->side != 0 && !lies_on_bound(block, 0.0, total->delta)) {
         return false;
     }
-    if (!interpolate(block) || (slips_between_reversals(block) && !foretells_slips(block))) {
+    if (!interpolate(block) || !foretells_slips(block)) {
         return false;
     }
     FcStepResult result = *total;

@@ -53,7 +53,6 @@ static void start_control(FcCrossing* crossing, double scale) {
     const double transient =
         has_transient ? first_transient(crossing, fc_crossing_delta(crossing), scale) : 0.0;
     fc_control_start(&crossing->control, crossing->plane, crossing->interval, transient);
-    crossing->control.is_bounded = crossing->is_bounded;
 }
 
 // The least progress over the part, in u. Derived: more than 12 events within it are rounding.

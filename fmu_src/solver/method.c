@@ -27,10 +27,6 @@ static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, co
     return true;
 }
 
-static bool is_affine(const FcScene* scene) {
-    return scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
-}
-
 // Whether the method leaves the scene to the default.
 static bool takes_default(const FcScene* scene, FcMethod method) {
     const int model = scene->friction->model;
@@ -41,7 +37,9 @@ static bool takes_default(const FcScene* scene, FcMethod method) {
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result) {
     assert(fc_drive_is_constant(&scene->drive));
-    if (!is_affine(scene) || fc_scene_is_loose(scene) || !takes_default(scene, method)) {
+    const int model = scene->friction->model;
+    if ((model != FC_DAHL && model != FC_LUGRE) || fc_scene_is_loose(scene) ||
+        !takes_default(scene, method)) {
         return false;
     }
     fc_constant_step(scene, contact, h, from, result);
