@@ -58,9 +58,8 @@ static void start_control(FcCrossing* crossing, double scale) {
 // The least progress over the part, in u. Derived: more than 12 events within it are rounding.
 static const double PROGRESS = 0x1p-40;
 
-// Panels in a row that do not get on, at an event that rounding hides.
-// After FC_MOST_TRIES of them the march passes over 2^-50 of the part, and then over twice as much each time. Over more than
-// 2^-20 it gives up, and the step is refused.
+// Panels in a row that do not get on, at an event that rounding hides. After twice FC_MOST_TRIES of them the march passes
+// over 2^-50 of the part, and then over twice as much each time. Over more than 2^-20 it gives up, and the step is refused.
 static void pass_over_rounding(FcCrossing* crossing, double before, int stalled) {
     const int doublings = stalled - 2 * FC_MOST_TRIES;
     if (doublings > 30) {

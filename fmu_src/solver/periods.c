@@ -39,6 +39,7 @@ enum { MOST_MEETINGS = 1000 };
 // little in each period turns slowly. Chosen empirically: half of it left a found scene 3e-5 of the force away,
 // twice of it costs twice the time of a chaotic motion.
 enum { LONGER_IF_DRIFTING = 4 };
+
 // Whole periods of a bounded bristle with its inputs held.
 typedef struct {
     const FcScene* scene;
