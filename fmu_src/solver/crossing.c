@@ -10,10 +10,10 @@ enum { START = FC_STAGES, LAST = FC_STAGES - 1 };
 
 FcKind fc_kind(const FcCrossing* crossing) {
     const int model = crossing->interval->scene->friction->model;
-    return model == FC_COULOMB           ? FC_NO_BRISTLE
-           : crossing->is_slipping       ? FC_SLIPS
-           : model == FC_ELASTIC_PLASTIC ? FC_STICKS
-                                         : FC_RELAXES;
+    return model == FC_COULOMB || crossing->is_rigid ? FC_NO_BRISTLE
+           : crossing->is_slipping                   ? FC_SLIPS
+           : model == FC_ELASTIC_PLASTIC             ? FC_STICKS
+                                                     : FC_RELAXES;
 }
 
 FcVector fc_crossing_delta(const FcCrossing* crossing) {

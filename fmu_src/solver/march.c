@@ -96,9 +96,38 @@ static void cross_part(FcCrossing* crossing, int number) {
     }
 }
 
+// Derived: a layer in which a bristle of the length D relaxes lasts sqrt(2 D / path) of an interval, some 1e-8, and changes
+// the mean by a sixth of that.
+static const double RIGID = DBL_EPSILON;
+
+// Whether the force is Coulomb's, but for what rounding cannot see. Then the motion ends on the bound.
+static void choose_rigid(FcCrossing* crossing) {
+    const FcInterval* interval = crossing->interval;
+    if (interval->scene->friction->model != FC_COULOMB &&
+        interval->saturation <= RIGID * interval->speed * interval->duration) { // at the most
+        fc_begin_part(crossing, 0);
+        crossing->is_rigid = interval->saturation <= RIGID * fc_path_left(crossing, 0.0);
+    }
+}
+
+static void end_on_bound(FcCrossing* crossing) {
+    const double t = crossing->interval->duration;
+    const FcPlaneCoefficients end = fc_coefficients_at(crossing, t);
+    FcVector F = fc_plane_coulomb(&end);
+    if (end.speed == 0.0) { // it has come from there
+        F = (FcVector){crossing->part.side * end.limit, 0.0};
+    }
+    fc_set_delta(crossing, (FcVector){F.x / end.sigma, F.y / end.sigma});
+    crossing->slips = crossing->is_slipping = crossing->is_bounded;
+    crossing->meetings += crossing->is_bounded;
+}
+
 static void cross(FcCrossing* crossing) {
     for (int i = 0; i < crossing->count; i++) {
         cross_part(crossing, i);
+    }
+    if (crossing->is_rigid) {
+        end_on_bound(crossing);
     }
 }
 
@@ -170,6 +199,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     fc_crossing_start(&crossing, &room, &plane, &interval, sticks, result->evaluations);
     crossing.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
     fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
+    choose_rigid(&crossing);
     if (fc_kind(&crossing) == FC_NO_BRISTLE) { // the deflection stands meanwhile
         crossing.along.relaxation = crossing.across_map.relaxation = 0.0;
         crossing.along.offset = crossing.across_map.offset = 0.0;
@@ -194,6 +224,7 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
     FcRoom room;
     FcCrossing crossing;
     fc_crossing_start(&crossing, &room, &plane, &interval, false, *evaluations);
+    choose_rigid(&crossing);
     crossing.from.for_any = true;
     crossing.is_bounded = false;
     crossing.scale = fc_most(start, crossing.first.limit / crossing.first.sigma);
