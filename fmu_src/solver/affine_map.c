@@ -120,35 +120,23 @@ static PathParts parts_of_path(double sigma, double limit, double displacement) 
 }
 
 // With the settled deflection D = s g / sigma, s = sgn X: delta = D + (delta_0 - D) e^-x/|D| along the path x. Work and
-// heat are the integrals of sigma delta and sigma delta |delta| / D over it.
-static FcMap map_of_path(double sigma, const PathParts* parts, double displacement) {
-    return (FcMap){
-        .relaxation = parts->relaxation,
-        .offset = parts->offset,
-        .work_slope = parts->force * parts->end,
-        .work_offset = parts->force * displacement * parts->mean,
-        // sigma (delta_0 e + D (1 - e))^2 / |D| integrated, e = e^-x/|D|
-        .heat_square = 0.5 * sigma * parts->relaxation * (2.0 - parts->relaxation),
-        .heat_slope = sigma * parts->offset * parts->relaxation,
-        .heat_offset = parts->force * displacement * parts->heat,
-    };
-}
-
-FcMap fc_map_of_path(double sigma, double limit, double displacement) {
-    assert(!(sigma < 0.0) && limit > 0.0);
-    const PathParts parts = parts_of_path(sigma, limit, displacement);
-    return map_of_path(sigma, &parts, displacement);
-}
-
-// drag = V (delta_1 - delta_0).
+// heat are the integrals of sigma delta and sigma delta |delta| / D over it, drag = V (delta_1 - delta_0).
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h) {
     assert(!(at->sigma < 0.0) && at->limit > 0.0 && h >= 0.0); // a sigma of NaN passes
     const double displacement = at->V * h;
     const PathParts parts = parts_of_path(at->sigma, at->limit, displacement);
-    FcMap map = map_of_path(at->sigma, &parts, displacement);
-    map.impulse_slope = parts.stiffness * h * parts.end;
-    map.impulse_offset = parts.force * h * parts.mean;
-    map.drag_slope = -at->V * parts.relaxation;
-    map.drag_offset = at->V * parts.offset;
-    return map;
+    return (FcMap){
+        .relaxation = parts.relaxation,
+        .offset = parts.offset,
+        .impulse_slope = parts.stiffness * h * parts.end,
+        .impulse_offset = parts.force * h * parts.mean,
+        .work_slope = parts.force * parts.end,
+        .work_offset = parts.force * displacement * parts.mean,
+        .drag_slope = -at->V * parts.relaxation,
+        .drag_offset = at->V * parts.offset,
+        // sigma (delta_0 e + D (1 - e))^2 / |D| integrated, e = e^-x/|D|
+        .heat_square = 0.5 * at->sigma * parts.relaxation * (2.0 - parts.relaxation),
+        .heat_slope = at->sigma * parts.offset * parts.relaxation,
+        .heat_offset = parts.force * displacement * parts.heat,
+    };
 }

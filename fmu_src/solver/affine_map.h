@@ -32,10 +32,6 @@ FcMap fc_map_of_one_start(const FcStepResult* result);
 void fc_map_apply(const FcMap* map, FcStepResult* result);
 void fc_map_apply_across(const FcMap* map, FcStepResult* result); // to delta_y
 
-// A displacement [m] without a reversal, with constant coefficients: its deflection, work and heat, without its impulse
-// and drag.
-FcMap fc_map_of_path(double sigma, double limit, double displacement);
-
 // One interval of constant coefficients: exact for any duration h [s] >= 0.
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h);
 

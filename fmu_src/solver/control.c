@@ -82,11 +82,6 @@ static double lag_for(const FcControl* control, const FcStraight* in, double rat
     return pace > 0.0 ? pace * fc_least(relaxation, in->length) : 0.0;
 }
 
-// The largest relaxation in a panel, while a transient is left.
-static double most_relaxation(double behind) {
-    return behind > 0.0 ? FC_RELAXATION * rough_exp(behind * (-1.0 / 7.0)) : INFINITY;
-}
-
 // ln of the transient over the allowed error: the rest of the start's, and behind a reversal that of the force, which
 // follows V while the bristle relaxes.
 static double transient_at(const FcControl* control, const FcPart* part, const FcReached* at) {
@@ -147,7 +142,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     const bool relaxes = is_relaxing(control, kind);
     assert(left > 0.0);
     const double behind = relaxes ? transient_at(control, part, at) : 0.0;
-    const double z = relaxes ? most_relaxation(behind) : INFINITY;
+    const double z = behind > 0.0 ? FC_RELAXATION * rough_exp(behind * (-1.0 / 7.0)) : INFINITY;
     double span = control->span;
     double longest = control->longest;
     if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
@@ -182,7 +177,7 @@ static bool sees_curve(const FcControl* control, const FcNodes* nodes) {
 }
 
 double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
-                         const FcPanel* panel, FcKind kind, FcPathLeft path_left, void* context) {
+                         const FcPanel* panel, FcKind kind, double* of_end) {
     const FcInterval* interval = control->interval;
     const double end = nodes->t[FC_STAGES - 1];
     const double allowed = fc_allowed_force(interval);
@@ -201,12 +196,8 @@ double fc_control_excess(const FcControl* control, const FcPart* part, const FcN
     const double whole = allowed * (by_z ? fc_least(1.0, fc_most(panel->z, path)) : 1.0);
     const double curve = in_curve || kind == FC_NO_BRISTLE ? FC_SHARE_IN_CURVE : 1.0;
     const double rounding = ROUNDING_OF_PANEL * panel->limit;
-    const double of_mean = FC_SAFETY * mean_error / fc_most(curve * FC_SHARE_OF_MEAN * whole, rounding);
-    double of_end = FC_SAFETY * end_error / fc_most(curve * FC_SHARE_OF_END * whole, rounding);
-    if (of_end > 1.0 && of_end > of_mean) {
-        of_end *= exp(-path_left(context, end) / interval->saturation);
-    }
-    return fc_most(of_mean, of_end);
+    *of_end = FC_SAFETY * end_error / fc_most(curve * FC_SHARE_OF_END * whole, rounding);
+    return FC_SAFETY * mean_error / fc_most(curve * FC_SHARE_OF_MEAN * whole, rounding);
 }
 
 double fc_control_shortens(double excess) {

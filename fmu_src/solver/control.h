@@ -36,11 +36,10 @@ void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval
 double fc_control_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
                          double end, double proposed);
 
-// The factor by which the panel's errors are too large. At the end they fade along the path left [m] to the
-// interval's end, which path_left gives; it is called only if that decides.
-typedef double (*FcPathLeft)(void* context, double t);
+// The factor by which the panel's errors of the mean are too large, and in *of_end that at the end, before it fades along the
+// path to the interval's end.
 double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
-                         const FcPanel* panel, FcKind kind, FcPathLeft path_left, void* context);
+                         const FcPanel* panel, FcKind kind, double* of_end);
 
 // The factor by which a panel is shortened that was refused, and that by which the one after it may be longer if there
 // were refusals, for an excess.

@@ -155,7 +155,16 @@ double fc_path_left(FcCrossing* crossing, double t) {
     return crossing->way[crossing->number] + least_path(crossing, &crossing->part, t, crossing->part.end);
 }
 
-static double path_left(void* context, double t) { return fc_path_left(context, t); }
+// The factor by which the errors of a panel that was solved are too large.
+static double excess_of(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel, FcKind kind) {
+    double of_end;
+    const double of_mean =
+        fc_control_excess(&crossing->control, &crossing->part, nodes, panel, kind, &of_end);
+    if (of_end > 1.0 && of_end > of_mean) { // the path is found only if it decides
+        of_end *= exp(-fc_path_left(crossing, nodes->t[LAST]) / crossing->interval->saturation);
+    }
+    return fc_most(of_mean, of_end);
+}
 
 double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
     const FcKind kind = fc_kind(crossing);
@@ -163,9 +172,7 @@ double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
                                  crossing->h);
     for (int tries = 0;; tries++) {
         const bool is_solved = fc_make_panel(crossing, h, nodes, panel);
-        const double excess = is_solved ? fc_control_excess(&crossing->control, &crossing->part, nodes, panel,
-                                                            kind, path_left, crossing)
-                                        : HUGE_VAL;
+        const double excess = is_solved ? excess_of(crossing, nodes, panel, kind) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= FC_MOST_TRIES) {
             if (!is_solved) {
                 crossing->along.offset = NAN;

@@ -28,7 +28,7 @@ typedef struct {
     bool touches;     // a free bristle is at its bound
     bool is_bounded;
     bool is_stalled; // at an event that rounding hides: a little push counts as none, and then it slips
-    bool is_rigid; // rounding cannot see the bristle's length beside the path: its force is Coulomb's
+    bool is_rigid;   // rounding cannot see the bristle's length beside the path: its force is Coulomb's
     int meetings;
     double heat;          // J, of break-away
     double drag;          // m2/s, of its drops

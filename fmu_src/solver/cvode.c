@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 #include "model/extremes.h"
-#include "solver/methods.h"
+#include "solver/method.h"
 
 // FC_NO_CVODE leaves it out of any build: SUNDIALS takes memory from the heap, which some targets do not have.
 #if defined(FC_WITH_SUNDIALS) && !defined(FC_NO_CVODE)

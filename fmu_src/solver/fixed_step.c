@@ -10,7 +10,7 @@
 #include <math.h>
 
 #include "model/extremes.h"
-#include "solver/methods.h"
+#include "solver/method.h"
 #include "solver/pieces.h"
 
 // The largest number of steps in a communication step, like FC_MOST_EVALUATIONS (solver.h): more would seem

@@ -112,7 +112,8 @@ FC_INLINE void integrate(const double* weight, bool for_any, const double* P, co
 // Deflection, work and heat of a bristle with constant sigma and g are closed forms of the path; the impulse is the
 // quadrature's.
 FC_INLINE void take_path(const FcFrom* from, double sigma, double limit, double X, FcMap* map) {
-    const FcMap path = fc_map_of_path(sigma, limit, X);
+    const FcCoefficients mean = {.V = X, .sigma = sigma, .limit = limit};
+    const FcMap path = fc_map_of_constant_scene(&mean, 1.0);
     const double start = from->for_any ? 0.0 : from->delta.x;
     map->relaxation = from->for_any ? path.relaxation : 1.0;
     map->offset = start - path.relaxation * start + path.offset;

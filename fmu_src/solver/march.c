@@ -33,7 +33,8 @@ static bool may_meet(const FcScene* scene, const FcScene* bound) {
 
 // The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
 // minus its change in the time 1 / r.
-static double first_transient(const FcCrossing* crossing, FcVector delta, double scale) {
+static double first_transient(const FcCrossing* crossing, double scale) {
+    const FcVector delta = fc_crossing_delta(crossing);
     const FcPlaneCoefficients at = crossing->first;
     const FcVector now = fc_plane_coulomb(&at);
     const double r = at.sigma * at.speed / at.limit;
@@ -50,9 +51,8 @@ static void start_control(FcCrossing* crossing, double scale) {
     const int model = crossing->interval->scene->friction->model;
     const bool has_transient =
         model == FC_DAHL || model == FC_LUGRE || (model == FC_ELASTIC_PLASTIC && !crossing->plane->on_line);
-    const double transient =
-        has_transient ? first_transient(crossing, fc_crossing_delta(crossing), scale) : 0.0;
-    fc_control_start(&crossing->control, crossing->plane, crossing->interval, transient);
+    fc_control_start(&crossing->control, crossing->plane, crossing->interval,
+                     has_transient ? first_transient(crossing, scale) : 0.0);
 }
 
 // The least progress over the part, in u. Derived: more than 12 events within it are rounding.

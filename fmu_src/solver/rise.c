@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "model/root.h"
 
@@ -32,23 +33,16 @@ static double root_between(double* f, double a, double b, double at_b) {
     return at_a < 0.0 ? fc_root_between(value_at, f, a, at_a, b, at_b, 0.0, &none) : a + 0x1p-50 * (b - a);
 }
 
-// Four numbers side by side, if the processor can: else they are two pairs.
-typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
-
 // The values at the start and after each of the equal steps.
 FC_WITH_AVX static void find_samples(const double f[POINTS], double value[FC_SAMPLES + 1]) {
-    value[0] = f[START];
-    for (int k = 0; k < FC_SAMPLES; k += 8) {
-        Four first = {0.0};
-        Four second = {0.0};
-        for (int j = 0; j < POINTS; j++) {
-            const Four* weight = (const Four*)(FC_RADAU.sample[j] + k);
-            first += f[j] * weight[0];
-            second += f[j] * weight[1];
+    double after[FC_SAMPLES] = {0.0};
+    for (int j = 0; j < POINTS; j++) {
+        for (int k = 0; k < FC_SAMPLES; k++) {
+            after[k] += f[j] * FC_RADAU.sample[j][k];
         }
-        *(Four*)(value + k + 1) = first;
-        *(Four*)(value + k + 5) = second;
     }
+    value[0] = f[START];
+    memcpy(value + 1, after, sizeof after);
 }
 
 double fc_first_rise(const double at_points[FC_POINTS], double over) {

@@ -56,20 +56,6 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
     return false;
 }
 
-// The directions of the bristle at the points, from delta at the start.
-static bool find_directions(const FcNodes* nodes, const FcPlaneBound* bound, FcVector delta,
-                            FcVector n[POINTS]) {
-    double a[POINTS];
-    a[START] = atan2(delta.y, delta.x);
-    if (!find_angles(nodes, bound, a[START], a)) {
-        return false;
-    }
-    for (int i = 0; i < POINTS; i++) {
-        n[i] = (FcVector){cos(a[i]), sin(a[i])};
-    }
-    return true;
-}
-
 bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
     assert(from->push > 0.0 && (!plane->on_line || from->delta.y == 0.0));
     FcPlaneCoefficients at[POINTS];
@@ -80,8 +66,12 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
         bound[i] = fc_plane_bound(plane, &at[i], 1, nodes->t[i], nodes->phase[i]);
         n[i] = (FcVector){from->delta.x < 0.0 ? -1.0 : 1.0, 0.0};
     }
-    if (!plane->on_line && !find_directions(nodes, bound, from->delta, n)) {
+    double a[POINTS] = {[START] = atan2(from->delta.y, from->delta.x)};
+    if (!plane->on_line && !find_angles(nodes, bound, a[START], a)) {
         return false;
+    }
+    for (int i = 0; i < POINTS && !plane->on_line; i++) {
+        n[i] = (FcVector){cos(a[i]), sin(a[i])};
     }
     double FC_PAIRED slope[POINTS];
     double F_x[POINTS];

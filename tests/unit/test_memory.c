@@ -15,7 +15,7 @@
 #include "fmi2/variables.h"
 #include "fmi2Functions.h"
 #include "fmi2_library.h"
-#include "solver/methods.h"
+#include "solver/method.h"
 #include "solver/solver.h"
 #include "variable_reference.h"
 
