@@ -57,18 +57,15 @@ static Real radau(const void* unused, Real x) {
 // Each thread makes it once.
 static const Rule* the_rule(void) {
     enum { n = STAGES };
-    static const Real GRID = 1.0L / 64.0L; // less than the distance of two zeros
     static _Thread_local Rule rule;
     if (rule.node[n] != 0.0L) {
         return &rule;
     }
-    Real x[n], P[n][n + 1], from = -1.0L;
+    Real x[n], P[n][n + 1];
     for (int i = 0; i < n; i++) {
-        while (i < n - 1 && radau(NULL, from) * radau(NULL, from + GRID) > 0.0L) {
-            from += GRID;
-        }
-        x[i] = i < n - 1 ? crossing(radau, NULL, from, from + GRID) : 1.0L;
-        from += GRID;
+        const Real angle = PI * ((Real)(n - i) - 0.75L) / n; // near to that of the zero
+        const Real low = cosl(angle + 0.5L * PI / n), high = cosl(angle - 0.5L * PI / n);
+        x[i] = i < n - 1 ? crossing(radau, NULL, low, high) : 1.0L;
         legendre(x[i], P[i]);
         rule.node[i + 1] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
@@ -391,17 +388,12 @@ ReferenceRest reference_rest(const ReferenceScene* scene) {
 
 // ---- Panels ----
 
-// STICKS: the bristle follows its law inside a bound, if there is one. CATCHES: it has broken away, and its kinetic bound has
-// risen since. SLIPS: along its bound.
-typedef enum { STICKS, CATCHES, SLIPS } Motion;
-
 typedef struct {
     Vector end;            // m, delta at the end
     Vector change;         // m, of delta: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
     Real length;           // m, the scale of errors of delta
-    Real force, power;     // N s, J, the scales of errors of impulse and energies
     Real blur;             // m, of delta by the rounding of time
 } Sums;
 
@@ -418,21 +410,15 @@ static void add(Sums* sums, const Sums* part) {
     sums->change += part->change;
     sums->length = part->length;
     sums->blur = part->blur;
-    sums->force += part->force;
-    sums->power += part->power;
 }
 
 // Adds a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
     const Vector rest = w->scene.sigma_2 * V + w->scene.sigma_1 * rate;
-    const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
     sums->impulse += time * (spring + w->scene.sigma_2 * V);
     sums->work += time * (dot(spring, V) + dot(rest, V));
     sums->heat += time * (dot(spring, V - rate) + dot(rest, V));
-    sums->path += time * speed;
-    sums->force += time * (strong + viscous + w->S);
-    sums->power +=
-        time * (strong + length_of(rest) + w->S) * (speed + (strong == 0.0L ? 0.0L : length_of(rate)));
+    sums->path += time * length_of(V);
 }
 
 // -d(delta') / d(delta) [1/s].
@@ -466,18 +452,18 @@ static const Real ON_BOUND =
     1e-10L; // of a bound: the rounding of a phase may leave a bristle that slips so far inside
 static const Real AS_DOUBLE = 1e-15L; // of a bound: the rounding of a deflection that is a double
 
-// The bristle between two marches.
+// The bristle between two marches. Inside its bound it follows its law, if it has broken away until it catches up.
 typedef struct {
     Vector delta; // m
-    bool broke;   // with static friction: it slips, or catches up
+    bool broke;   // with static friction: it has broken away, and slips or catches up
 } State;
 
 // The state of a march through the step.
 typedef struct {
     World* w;
     Sums sums;
-    Motion motion;
     State state;
+    bool slips;    // along its bound
     bool slipped;  // at any time
     bool met;      // the motion has come to its end,
     Real from;     // after this time,
@@ -495,14 +481,14 @@ static Signs signs_at(const March* march, const At* at, Vector delta) {
     if (!has_bound(w)) {
         return signs;
     }
-    if (march->motion != SLIPS) {
+    if (!march->slips) {
         // on a ramp in which nothing moves the deflection is a double
         const Real slack = w->ramp && has_static(w) && !march->state.broke ? 1e-11L : ROUNDING;
         signs.room = bound(w, at, !march->state.broke) * (1.0L + slack) - length_of(delta);
     }
-    if (march->motion == CATCHES && w->ramp) {
+    if (!march->slips && march->state.broke && w->ramp) {
         signs.lead = w->pushed ? INFINITY : dot(along(delta, 1.0L), at->input);
-    } else if (march->motion != STICKS) {
+    } else if (march->slips || march->state.broke) {
         signs.lead = outward(w, at, delta) + ROUNDING * (w->top + fabsl(bound_rate(w, at, false)));
     }
     return signs;
@@ -513,56 +499,42 @@ typedef struct {
     Signs sign[STAGES + 1]; // at the start and at the nodes
 } Panel;
 
-// Adds a rate at the node j, and its slope, to the equations Y_i - size sum_j to_ij slope_j Y_j = size sum_j to_ij rate_j.
-static void add_rate(Real A[STAGES][STAGES], Vector* side, int j, Real size, Real slope, Vector rate) {
-    for (int i = 0; i < STAGES; i++) {
-        const Real weight = size * the_rule()->to[i][j];
-        A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-        side[i] += weight * rate;
-    }
-}
-
-// The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
-static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
-    Real A[STAGES][STAGES];
-    for (int j = 0; j < STAGES; j++) {
-        const Real r = relaxation(w, &at[j]);
-        add_rate(A, change, j, size, -r, at[j].V - r * delta);
-    }
-    solve(A, change);
-}
-
 // That direction, turned by an angle [rad].
 static Vector turned(Vector n, Real angle) { return angle == 0.0L ? n : direction(angle / (2.0L * PI)) * n; }
 
-// The angles from the direction n at the nodes of a bristle that slips, by Newton from 0; returns false if it does not
-// converge.
-static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
+// At the nodes the changes Y of delta, or the angles from its direction if it slips along its bound, by Newton from 0:
+// Y_i = size sum_j to_ij rate_j(Y_j). Returns false if that does not converge; without slip the equations are linear.
+static bool collocate(const World* w, const At* at, Real size, Vector delta, bool slips, Vector* Y) {
     for (int k = 0; k < 25; k++) {
         Real A[STAGES][STAGES], most = 0.0L;
         Vector step[STAGES];
         for (int i = 0; i < STAGES; i++) {
-            step[i] = -angle[i];
+            step[i] = -Y[i];
         }
         for (int j = 0; j < STAGES; j++) {
-            const Vector now = turned(n, angle[j]), V = at[j].V;
-            const Real lies = bound(w, &at[j], false), rate = dot(V, across(now)) / lies,
-                       slope = -dot(V, now) / lies;
+            const Vector n = turned(along(delta, 1.0L), creall(Y[j]));
+            const Real lies = bound(w, &at[j], false), r = relaxation(w, &at[j]);
+            const Vector rate = slips ? dot(at[j].V, across(n)) / lies : at[j].V - r * delta;
+            const Real slope = slips ? -dot(at[j].V, n) / lies : -r;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
-            add_rate(A, step, j, size, slope, rate);
+            for (int i = 0; i < STAGES; i++) {
+                const Real weight = size * the_rule()->to[i][j];
+                A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
+                step[i] += weight * rate;
+            }
         }
         solve(A, step);
         for (int i = 0; i < STAGES; i++) {
-            angle[i] += creall(step[i]);
-            most = fmaxl(most, fabsl(creall(step[i])));
+            Y[i] += step[i];
+            most = fmaxl(most, length_of(step[i]));
+        }
+        if (!slips || most < 1e-9L) { // the next would be 1e-18
+            return true;
         }
         if (!(most < 3.0L)) {
             return false;
-        }
-        if (most < 1e-9L) { // the next would be 1e-18
-            return true;
         }
     }
     return false;
@@ -583,36 +555,30 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     World* w = march->w;
     const Rule* rule = the_rule();
     const Real size = b - a;
-    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
+    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->slips;
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
     Vector change[STAGES] = {0.0L};
-    Real angle[STAGES] = {0.0L};
-    const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
     for (int i = 0; i < STAGES; i++) {
         at[i] = scene_at(w, a + size * rule->node[i + 1]);
     }
-    if (slips && !turn_over(w, at, size, start, angle)) {
+    if (bristle && !collocate(w, at, size, delta, slips, change)) {
         p.sums.end = (Real)NAN; // agrees with nothing
         return p;
     }
-    if (bristle && !slips) {
-        collocate(w, at, size, delta, change);
-    }
-    Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
+    Real relaxed = 0.0L, fastest = 0.0L;
     for (int i = 0; i < STAGES; i++) {
         const Real t = a + size * rule->node[i + 1];
         Vector rate = 0.0L, spring = 0.0L;
         if (slips) {
-            change[i] = (bound(w, &at[i], false) * turned(start, angle[i])) - delta;
+            change[i] = turned(along(delta, bound(w, &at[i], false)), creall(change[i])) - delta;
         }
         const Vector now = delta + change[i];
         if (bristle) {
             rate = rate_of(w, &at[i], now, slips);
             spring = at[i].sigma * now;
             relaxed += slips ? 0.0L : size * rule->weight[i] * relaxation(w, &at[i]);
-            longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
         } else if (w->scene.law == LAW_COULOMB) {
             spring = coulomb_force(w, &at[i], t, i == last);
@@ -624,9 +590,8 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         p.sums.change = change[last];
         p.sums.end = delta + change[last];
         p.sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
-        p.sums.length = fmaxl(longest * expl(-relaxed), at[last].g / at[last].sigma);
+        p.sums.length = fmaxl(length_of(p.sums.end), at[last].g / at[last].sigma);
         p.sums.impulse += w->scene.sigma_1 * p.sums.change;
-        p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
     const At first = scene_at(w, a);
     p.sign[0] = signs_at(march, &first, delta);
@@ -634,18 +599,19 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
 }
 
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
-static const Real LEAST = 1e-16L; // of the force of the step: smaller errors of a panel are accepted
+static const Real LEAST = 1e-16L; // of the whole step: smaller errors of a panel are accepted
 static const int DEEPEST = 110;
 static const Real MOST_PANELS = 1e6L,
                   MOST_OF_SETTLING = 1e5L; // more are not taken, and the result is not known
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
-    const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
-    const Real force = share * LEAST * two->force / size;
-    const Real impulse = same * two->force + force * w->h;
-    const Real energy = same * two->power + force * (w->top * w->h + two->length);
-    return length_of(one->end - two->end) <= same * two->length + two->blur &&
+    const Real share = w->fineness == 1 ? 1.0L : 0.01L;
+    const Real change = length_of(two->change), force = w->S + w->scene.sigma_1 * change / size;
+    const Real impulse = share * force * (AGREE * size + LEAST * w->h);
+    const Real way = two->path + change, whole = w->top * w->h + two->length;
+    const Real energy = share * force * (AGREE * way + LEAST * whole);
+    return length_of(one->end - two->end) <= share * AGREE * two->length + two->blur &&
            length_of(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
            fabsl(one->heat - two->heat) <= energy;
 }
@@ -811,8 +777,9 @@ static bool catches(const World* w, const At* at, Vector delta, bool pushed) {
 // that it is pushed then, and sticks if not. On a ramp from V = 0 the later V decides.
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
-    march->motion = STICKS;
+    march->slips = false;
     if (!has_bound(w)) {
+        march->state.broke = false;
         return;
     }
     const At at = scene_at(w, a), later = scene_at(w, 0.5L * (a + b));
@@ -823,13 +790,10 @@ static void begin(March* march, Real a, Real b) {
     const bool no_V = w->ramp && dot(march->state.delta, at.input) == 0.0L;
     const Real slack = !w->ramp ? AS_DOUBLE : march->state.broke ? ON_BOUND : 0.0L;
     const bool lies = length_of(march->state.delta) >= (1.0L - slack) * bound(w, &at, false);
-    if (pushed && lies && (march->state.broke || !has_static(w))) {
-        march->motion = SLIPS;
-    } else if (march->state.broke && catches(w, no_V ? &later : &at, march->state.delta, pushed)) {
-        march->motion = CATCHES;
-    }
-    march->state.broke = march->state.broke && march->motion != STICKS;
-    march->slipped = march->slipped || march->motion != STICKS;
+    march->slips = pushed && lies && (march->state.broke || !has_static(w));
+    march->state.broke =
+        march->state.broke && (march->slips || catches(w, no_V ? &later : &at, march->state.delta, pushed));
+    march->slipped = march->slipped || march->slips || march->state.broke;
 }
 
 // Break-away: the bristle drops along its direction, and its damping adds an impulse.
@@ -848,18 +812,17 @@ static void break_away(March* march, const At* at) {
 static void change_motion(March* march) {
     const World* w = march->w;
     const At at = scene_at(w, march->met_at);
-    bool slips = false;
+    march->slips = false;
     if (march->at_bound) {
         if (has_static(w) && !march->state.broke) {
             break_away(march, &at);
         } else {
             march->state.delta = along(march->state.delta, bound(w, &at, false));
         }
-        slips = outward(w, &at, march->state.delta) > 0.0L;
+        march->slips = outward(w, &at, march->state.delta) > 0.0L;
         march->slipped = true;
     }
-    march->state.broke = march->state.broke && (slips || catches(w, &at, march->state.delta, false));
-    march->motion = slips ? SLIPS : march->state.broke ? CATCHES : STICKS;
+    march->state.broke = march->state.broke && (march->slips || catches(w, &at, march->state.delta, false));
 }
 
 // Takes [a, b] in panels that are halved until one agrees with its two halves.
@@ -941,7 +904,6 @@ static World ramp_between(const World* from, const World* to) {
     const ReferenceScene* end = &to->scene;
     w.ramp = true;
     w.h = 1.0L;
-    w.S = to->S;
     w.top = 0.0L;
     s->input = INPUT_SEPARATION;
     s->V_1 = s->V_2 = s->a_d = 0.0;
@@ -973,6 +935,7 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         const At after = scene_at(w, 0.0L);
         ramp.pushed = outward(w, &after, state->delta) > 0.0L;
         const At begin = scene_at(&ramp, 0.0L), end = scene_at(&ramp, 1.0L);
+        ramp.S = fmaxl(w->S, begin.sigma * length_of(state->delta));
         const Real D = bound(&ramp, &begin, false);
         // Without static friction no state tells that it slips.
         const bool slid =
