@@ -458,8 +458,7 @@ typedef struct {
     State state;
     bool slips;    // along its bound
     bool slipped;  // at any time
-    bool met;      // the motion has come to its end,
-    Real from;     // after this time,
+    Real from;     // its last motion came to its end after this time,
     Real met_at;   // then,
     bool at_bound; // at its bound, not by its lead
 } March;
@@ -645,27 +644,27 @@ static Real beyond(const void* context, Real t) {
     return is_over(&p, STAGES) ? 1.0L : -1.0L;
 }
 
-// Takes an accurate panel, up to the motion's end if that lies in it.
-static void commit(March* march, Real a, Real b, const Panel* p) {
+// Takes an accurate panel, up to the motion's end if that lies in it; returns whether it does.
+static bool commit(March* march, Real a, Real b, const Panel* p) {
     int k = 0;
     while (k <= STAGES && !is_over(p, k)) {
         k++;
     }
     Panel part = *p;
     if (k <= STAGES) {
-        march->met = true;
         march->from = a;
         const Real *x = the_rule()->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
         march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
         march->at_bound = p->sign[0].room < 0.0L;
         if (!(march->met_at > a)) {
-            return;
+            return true;
         }
         part = panel(march, a, march->met_at, march->state.delta);
         march->at_bound = part.sign[STAGES].room < 0.0L;
     }
     add(&march->sums, &part.sums);
     march->state.delta = part.sums.end;
+    return k <= STAGES;
 }
 
 // ---- Cuts of the step ----
@@ -784,15 +783,11 @@ static void march_between(March* march, Real a, Real b) {
             end = middle;
             continue;
         }
-        march->met = false;
-        commit(march, a, middle, &left);
-        if (!march->met) {
-            commit(march, middle, end, &right);
-        }
+        const bool met = commit(march, a, middle, &left) || commit(march, middle, end, &right);
         const Real size = end - a;
-        a = march->met ? march->met_at : end;
+        a = met ? march->met_at : end;
         end = fminl(b, a + 2.0L * size);
-        if (march->met) {
+        if (met) {
             change_motion(march);
         }
     }
