@@ -900,30 +900,29 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         ramp.pushed = outward(w, &after, state->delta) > 0.0L;
         const At begin = scene_at(&ramp, 0.0L), end = scene_at(&ramp, 1.0L);
         ramp.S = fmaxl(w->S, begin.sigma * length_of(state->delta));
-        const Real D = begin.D;
         // Without static friction no state tells that it slips.
         const bool slid =
-            length_of(state->delta) >= (1.0L - ON_BOUND) * D && dot(state->delta, begin.input) > 0.0L;
+            length_of(state->delta) >= (1.0L - ON_BOUND) * begin.D && dot(state->delta, begin.input) > 0.0L;
         state->broke = past.excess == 0.0L ? slid && has_static(&ramp) : state->broke;
-        const Real D_end = end.D;
-        if (state->broke && dot(state->delta, begin.input) <= 0.0L && fabsl(D_end - D) <= ON_BOUND * D) {
+        if (state->broke && dot(state->delta, begin.input) <= 0.0L &&
+            fabsl(end.D - begin.D) <= ON_BOUND * begin.D) {
             state->broke = has_static(w);
             return 0.0L; // nothing but rounding: the next motion decides whether it slips
         }
         // The bound rises again before the bristle has caught up: it is faster than the bristle.
-        state->broke = state->broke &&
-                       !(length_of(state->delta) < (1.0L - ON_BOUND) * D && D_end > (1.0L + ON_BOUND) * D);
+        state->broke = state->broke && !(length_of(state->delta) < (1.0L - ON_BOUND) * begin.D &&
+                                         end.D > (1.0L + ON_BOUND) * begin.D);
         const March march = march_from(&ramp, *state);
         *state = (State){march.state.delta, march.state.broke && has_static(w)};
         return march.sums.heat;
     }
     const At at = scene_at(w, 0.0L);
-    const Real length = length_of(state->delta), lies = at.D;
+    const Real length = length_of(state->delta);
     if (length <= (1.0L + 1e-11L) * (state->broke ? at.D : at.D_static)) {
         return 0.0L;
     }
-    *state = (State){along(state->delta, lies), has_static(w)};
-    return 0.5L * at.sigma * (length - lies) * (length + lies);
+    *state = (State){along(state->delta, at.D), has_static(w)};
+    return 0.5L * at.sigma * (length - at.D) * (length + at.D);
 }
 
 // ---- Many equal periods ----
@@ -935,22 +934,21 @@ typedef struct {
     Real m[ROWS][ROWS];
 } Map;
 
-static Map find_map(World* w, Real unit) {
+static Map find_map(const World* w, Real unit) {
     const Vector at[4] = {0.0L, 1.0L, -1.0L, CMPLXL(0.0L, 1.0L)};
     Map map = {.m = {{1.0L}}};
     Real of[4][5], way[4];
     Vector shift = 0.0L;
-    const bool bounded = w->bounded;
-    w->bounded = false; // of a period that touches none
+    World free = *w; // of a period that touches no bound
+    free.bounded = false;
     for (int k = 0; k < 4; k++) {
-        const March march = march_from(w, (State){unit * at[k], false});
+        const March march = march_from(&free, (State){unit * at[k], false});
         const Sums* s = &march.sums;
         shift = k == 0 ? (1.0L / unit * s->change) : shift;
         way[k] = creall(s->change) / unit;
         of[k][0] = creall(s->impulse), of[k][1] = cimagl(s->impulse), of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
     }
-    w->bounded = bounded;
     const Real x = w->elastic && w->scene.V == 0.0 ? 0.0L : creall(shift); // it does not drift
     const Real y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : cimagl(shift);
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
@@ -1078,7 +1076,7 @@ static bool go_periods(const World* of, State* state, Real n, bool newton, Sums*
         if (w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
             return false;
         }
-        if (!march.slipped) {
+        if (!march.slipped && (steps == 0 || w->elastic)) { // an elastic one drifts until it slips
             const Real passed = pass_untouched(&p, state, n - done, sums);
             if (isinf(n) && passed == FOR_EVER) {
                 *mean = w->scene.f * march_from(w, *state).sums.impulse;
