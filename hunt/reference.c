@@ -57,18 +57,15 @@ static Real radau(const void* unused, Real x) {
 // Each thread makes it once.
 static const Rule* the_rule(void) {
     enum { n = STAGES };
-    static const Real GRID = 1.0L / 64.0L; // less than the distance of two zeros
     static _Thread_local Rule rule;
     if (rule.node[n] != 0.0L) {
         return &rule;
     }
-    Real x[n], P[n][n + 1], from = -1.0L;
+    Real x[n], P[n][n + 1];
     for (int i = 0; i < n; i++) {
-        while (i < n - 1 && radau(NULL, from) * radau(NULL, from + GRID) > 0.0L) {
-            from += GRID;
-        }
-        x[i] = i < n - 1 ? crossing(radau, NULL, from, from + GRID) : 1.0L;
-        from += GRID;
+        const Real angle = PI * ((Real)(n - i) - 0.75L) / n; // near to that of the zero
+        const Real low = cosl(angle + 0.5L * PI / n), high = cosl(angle - 0.5L * PI / n);
+        x[i] = i < n - 1 ? crossing(radau, NULL, low, high) : 1.0L;
         legendre(x[i], P[i]);
         rule.node[i + 1] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
@@ -186,15 +183,15 @@ typedef struct {
     Real panels; // taken so far
 } World;
 
-// At a local time; rates are time derivatives of logarithms.
+// At a local time.
 typedef struct {
-    Vector V;                      // m/s, 0 on a ramp
-    Vector input;                  // m/s, the same on a ramp too
-    Real F_n, sigma;               // N, N/m
-    Real coulomb;                  // N, F_C or mu F_n
-    Real g;                        // N, the force to which a bristle tends
-    Real B;                        // N, the bound of a bristle that sticks
-    Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
+    Vector V;                 // m/s, 0 on a ramp
+    Vector input;             // m/s, the same on a ramp too
+    Real F_n, sigma;          // N, N/m
+    Real coulomb;             // N, F_C or mu F_n
+    Real g;                   // N, the force to which a bristle tends
+    Real D, D_rate, D_static; // m, m/s, m: the bounds of a bristle that slips, and of one that sticks
+    Real rate;                // 1/s, of ln(limit / sigma) without Stribeck's curve
 } At;
 
 // (cos, sin) of 2 pi turns: by an angle of at most an eighth of a turn, which the library need not reduce.
@@ -248,7 +245,7 @@ static bool knows_contact(const ReferenceScene* s) {
     return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
 }
 
-// F_n, sigma and the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left out.
+// F_n, sigma and the rate; the terms that cancel in it are left out.
 static At contact_at(const World* w, Real t, Vector turn) {
     const ReferenceScene* s = &w->scene;
     At at = {.sigma = s->contact_sigma};
@@ -277,7 +274,7 @@ static At contact_at(const World* w, Real t, Vector turn) {
     const Real of_limit = s->limit == LIMIT_LOAD ? 1.0L : 0.0L, of_sigma = asperities ? 2.0L : mindlin;
     const Real by_E = of_limit * of.by_force - of.by_stiffness;
     const Real by_d = (of_sigma - of_limit) * w->decay + (asperities ? 3.0L / d : 0.0L);
-    at.bound_rate = by_E * s->E_rate + by_d * d_rate;
+    at.rate = by_E * s->E_rate + by_d * d_rate;
     return at;
 }
 
@@ -310,12 +307,10 @@ static At scene_at(const World* w, Real t) {
         at.coulomb *= expl(w->ln_rate.limit * t);
         excess = (1.0L + w->excess) * expl(w->ln_rate.ratio * t) - 1.0L;
         V_S *= expl(w->ln_rate.V_S * t);
-        at.bound_rate += w->ln_rate.limit - w->ln_rate.scale;
+        at.rate += w->ln_rate.limit - w->ln_rate.scale;
     }
-    at.kinetic_rate = at.bound_rate;
-    at.bound_rate += w->ln_rate.ratio;
-    at.B = at.coulomb * (1.0L + excess);
     at.g = at.coulomb;
+    Real curve_rate = 0.0L;
     if (excess != 0.0L) {
         const Real square = dot(V, V) / (V_S * V_S), fall = expl(-square);
         const Real curve = 1.0L + excess * fall;
@@ -323,17 +318,12 @@ static At scene_at(const World* w, Real t) {
         Vector moves[2];
         velocities(w, t, 1, moves);
         const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V, moves[1]) / (V_S * V_S));
-        at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
+        curve_rate = ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
     }
+    at.D_static = at.coulomb * (1.0L + excess) / at.sigma;
+    at.D = w->elastic ? at.g / at.sigma : at.D_static;
+    at.D_rate = at.D * (at.rate + (w->elastic ? curve_rate : w->ln_rate.ratio));
     return at;
-}
-
-// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
-static Real bound(const World* w, const At* at, bool sticks) {
-    return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
-}
-static Real bound_rate(const World* w, const At* at, bool sticks) {
-    return bound(w, at, sticks) * (sticks || !w->elastic ? at->bound_rate : at->kinetic_rate);
 }
 
 // ---- The step ----
@@ -391,17 +381,12 @@ ReferenceRest reference_rest(const ReferenceScene* scene) {
 
 // ---- Panels ----
 
-// STICKS: the bristle follows its law inside a bound, if there is one. CATCHES: it has broken away, and its kinetic bound has
-// risen since. SLIPS: along its bound.
-typedef enum { STICKS, CATCHES, SLIPS } Motion;
-
 typedef struct {
     Vector end;            // m, delta at the end
     Vector change;         // m, of delta: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
     Real length;           // m, the scale of errors of delta
-    Real force, power;     // N s, J, the scales of errors of impulse and energies
     Real blur;             // m, of delta by the rounding of time
 } Sums;
 
@@ -418,21 +403,15 @@ static void add(Sums* sums, const Sums* part) {
     sums->change += part->change;
     sums->length = part->length;
     sums->blur = part->blur;
-    sums->force += part->force;
-    sums->power += part->power;
 }
 
 // Adds a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
     const Vector rest = w->scene.sigma_2 * V + w->scene.sigma_1 * rate;
-    const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
     sums->impulse += time * (spring + w->scene.sigma_2 * V);
     sums->work += time * (dot(spring, V) + dot(rest, V));
     sums->heat += time * (dot(spring, V - rate) + dot(rest, V));
-    sums->path += time * speed;
-    sums->force += time * (strong + viscous + w->S);
-    sums->power +=
-        time * (strong + length_of(rest) + w->S) * (speed + (strong == 0.0L ? 0.0L : length_of(rate)));
+    sums->path += time * length_of(V);
 }
 
 // -d(delta') / d(delta) [1/s].
@@ -446,13 +425,13 @@ static Vector rate_of(const World* w, const At* at, Vector delta, bool slips) {
         return at->V - relaxation(w, at) * delta;
     }
     const Vector n = along(delta, 1.0L);
-    return (bound_rate(w, at, false) * n) + dot(at->V, across(n)) * across(n);
+    return (at->D_rate * n) + dot(at->V, across(n)) * across(n);
 }
 
 // The speed [m/s] at which the law alone would carry a bristle of that direction beyond its kinetic bound.
 static Real outward(const World* w, const At* at, Vector delta) {
-    const Real own = dot(along(delta, 1.0L), at->V) - relaxation(w, at) * bound(w, at, false);
-    return own - bound_rate(w, at, false);
+    const Real own = dot(along(delta, 1.0L), at->V) - relaxation(w, at) * at->D;
+    return own - at->D_rate;
 }
 
 // The motion continues as long as both signs are positive. A sign is INFINITY if it cannot end the motion.
@@ -466,27 +445,27 @@ static const Real ON_BOUND =
     1e-10L; // of a bound: the rounding of a phase may leave a bristle that slips so far inside
 static const Real AS_DOUBLE = 1e-15L; // of a bound: the rounding of a deflection that is a double
 
-// The bristle between two marches.
+// The bristle between two marches. Inside its bound it follows its law, if it has broken away until it catches up.
 typedef struct {
     Vector delta; // m
-    bool broke;   // with static friction: it slips, or catches up
+    bool broke;   // with static friction: it has broken away, and slips or catches up
 } State;
 
 // The state of a march through the step.
 typedef struct {
     World* w;
     Sums sums;
-    Motion motion;
     State state;
+    bool slips;    // along its bound
     bool slipped;  // at any time
-    bool met;      // the motion has come to its end,
-    Real from;     // after this time,
+    Real from;     // its last motion came to its end after this time,
     Real met_at;   // then,
     bool at_bound; // at its bound, not by its lead
 } March;
 
 static bool has_bound(const World* w) { return w->bounded && !w->open; }
-static bool has_static(const World* w) { return w->elastic && w->excess + w->ln_rate.ratio != 0.0L; }
+static bool has_curve(const World* w) { return w->excess + w->ln_rate.ratio != 0.0L; }
+static bool has_static(const World* w) { return w->elastic && has_curve(w); }
 
 // Each sign has a slack of little more than its rounding.
 static Signs signs_at(const March* march, const At* at, Vector delta) {
@@ -495,15 +474,15 @@ static Signs signs_at(const March* march, const At* at, Vector delta) {
     if (!has_bound(w)) {
         return signs;
     }
-    if (march->motion != SLIPS) {
+    if (!march->slips) {
         // on a ramp in which nothing moves the deflection is a double
         const Real slack = w->ramp && has_static(w) && !march->state.broke ? 1e-11L : ROUNDING;
-        signs.room = bound(w, at, !march->state.broke) * (1.0L + slack) - length_of(delta);
+        signs.room = (march->state.broke ? at->D : at->D_static) * (1.0L + slack) - length_of(delta);
     }
-    if (march->motion == CATCHES && w->ramp) {
+    if (!march->slips && march->state.broke && w->ramp) {
         signs.lead = w->pushed ? INFINITY : dot(along(delta, 1.0L), at->input);
-    } else if (march->motion != STICKS) {
-        signs.lead = outward(w, at, delta) + ROUNDING * (w->top + fabsl(bound_rate(w, at, false)));
+    } else if (march->slips || march->state.broke) {
+        signs.lead = outward(w, at, delta) + ROUNDING * (w->top + fabsl(at->D_rate));
     }
     return signs;
 }
@@ -513,56 +492,42 @@ typedef struct {
     Signs sign[STAGES + 1]; // at the start and at the nodes
 } Panel;
 
-// Adds a rate at the node j, and its slope, to the equations Y_i - size sum_j to_ij slope_j Y_j = size sum_j to_ij rate_j.
-static void add_rate(Real A[STAGES][STAGES], Vector* side, int j, Real size, Real slope, Vector rate) {
-    for (int i = 0; i < STAGES; i++) {
-        const Real weight = size * the_rule()->to[i][j];
-        A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-        side[i] += weight * rate;
-    }
-}
-
-// The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
-static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
-    Real A[STAGES][STAGES];
-    for (int j = 0; j < STAGES; j++) {
-        const Real r = relaxation(w, &at[j]);
-        add_rate(A, change, j, size, -r, at[j].V - r * delta);
-    }
-    solve(A, change);
-}
-
 // That direction, turned by an angle [rad].
 static Vector turned(Vector n, Real angle) { return angle == 0.0L ? n : direction(angle / (2.0L * PI)) * n; }
 
-// The angles from the direction n at the nodes of a bristle that slips, by Newton from 0; returns false if it does not
-// converge.
-static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
+// At the nodes the changes Y of delta, or the angles from its direction if it slips along its bound, by Newton from 0:
+// Y_i = size sum_j to_ij rate_j(Y_j). Returns false if that does not converge; without slip the equations are linear.
+static bool collocate(const World* w, const At* at, Real size, Vector delta, bool slips, Vector* Y) {
     for (int k = 0; k < 25; k++) {
         Real A[STAGES][STAGES], most = 0.0L;
         Vector step[STAGES];
         for (int i = 0; i < STAGES; i++) {
-            step[i] = -angle[i];
+            step[i] = -Y[i];
         }
         for (int j = 0; j < STAGES; j++) {
-            const Vector now = turned(n, angle[j]), V = at[j].V;
-            const Real lies = bound(w, &at[j], false), rate = dot(V, across(now)) / lies,
-                       slope = -dot(V, now) / lies;
+            const Vector n = turned(along(delta, 1.0L), creall(Y[j]));
+            const Real lies = at[j].D, r = relaxation(w, &at[j]);
+            const Vector rate = slips ? dot(at[j].V, across(n)) / lies : at[j].V - r * delta;
+            const Real slope = slips ? -dot(at[j].V, n) / lies : -r;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
-            add_rate(A, step, j, size, slope, rate);
+            for (int i = 0; i < STAGES; i++) {
+                const Real weight = size * the_rule()->to[i][j];
+                A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
+                step[i] += weight * rate;
+            }
         }
         solve(A, step);
         for (int i = 0; i < STAGES; i++) {
-            angle[i] += creall(step[i]);
-            most = fmaxl(most, fabsl(creall(step[i])));
+            Y[i] += step[i];
+            most = fmaxl(most, length_of(step[i]));
+        }
+        if (!slips || most < 1e-9L) { // the next would be 1e-18
+            return true;
         }
         if (!(most < 3.0L)) {
             return false;
-        }
-        if (most < 1e-9L) { // the next would be 1e-18
-            return true;
         }
     }
     return false;
@@ -583,36 +548,30 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     World* w = march->w;
     const Rule* rule = the_rule();
     const Real size = b - a;
-    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
+    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->slips;
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
     Vector change[STAGES] = {0.0L};
-    Real angle[STAGES] = {0.0L};
-    const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
     for (int i = 0; i < STAGES; i++) {
         at[i] = scene_at(w, a + size * rule->node[i + 1]);
     }
-    if (slips && !turn_over(w, at, size, start, angle)) {
+    if (bristle && !collocate(w, at, size, delta, slips, change)) {
         p.sums.end = (Real)NAN; // agrees with nothing
         return p;
     }
-    if (bristle && !slips) {
-        collocate(w, at, size, delta, change);
-    }
-    Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
+    Real relaxed = 0.0L, fastest = 0.0L;
     for (int i = 0; i < STAGES; i++) {
         const Real t = a + size * rule->node[i + 1];
         Vector rate = 0.0L, spring = 0.0L;
         if (slips) {
-            change[i] = (bound(w, &at[i], false) * turned(start, angle[i])) - delta;
+            change[i] = turned(along(delta, at[i].D), creall(change[i])) - delta;
         }
         const Vector now = delta + change[i];
         if (bristle) {
             rate = rate_of(w, &at[i], now, slips);
             spring = at[i].sigma * now;
             relaxed += slips ? 0.0L : size * rule->weight[i] * relaxation(w, &at[i]);
-            longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
         } else if (w->scene.law == LAW_COULOMB) {
             spring = coulomb_force(w, &at[i], t, i == last);
@@ -624,9 +583,8 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         p.sums.change = change[last];
         p.sums.end = delta + change[last];
         p.sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
-        p.sums.length = fmaxl(longest * expl(-relaxed), at[last].g / at[last].sigma);
+        p.sums.length = fmaxl(length_of(p.sums.end), at[last].g / at[last].sigma);
         p.sums.impulse += w->scene.sigma_1 * p.sums.change;
-        p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
     const At first = scene_at(w, a);
     p.sign[0] = signs_at(march, &first, delta);
@@ -634,18 +592,20 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
 }
 
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
-static const Real LEAST = 1e-16L; // of the force of the step: smaller errors of a panel are accepted
+static const Real LEAST = 1e-16L; // of the whole step: smaller errors of a panel are accepted
 static const int DEEPEST = 110;
 static const Real MOST_PANELS = 1e6L,
-                  MOST_OF_SETTLING = 1e5L; // more are not taken, and the result is not known
+                  MOST_OF_SETTLING = 1.5e5L; // more are not taken, and the result is not known
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
-    const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
-    const Real force = share * LEAST * two->force / size;
-    const Real impulse = same * two->force + force * w->h;
-    const Real energy = same * two->power + force * (w->top * w->h + two->length);
-    return length_of(one->end - two->end) <= same * two->length + two->blur &&
+    const Real share = w->fineness == 1 ? 1.0L : 0.01L;
+    const Real change = length_of(two->change), force = w->S + w->scene.sigma_1 * change / size;
+    const Real impulse = share * force * (AGREE * size + LEAST * w->h);
+    const Real way = two->path + change, whole = w->top * w->h + two->length;
+    const Real energy = share * force * (AGREE * way + LEAST * whole);
+    return length_of(one->end - two->end) <= share * AGREE * two->length + two->blur &&
+           fabsl(one->path - two->path) <= share * (AGREE * way + LEAST * whole) &&
            length_of(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
            fabsl(one->heat - two->heat) <= energy;
 }
@@ -662,13 +622,8 @@ static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
     return curve > 0.0L && lowest > x[0] && lowest < x[2] && low < 0.5L * least && least - low > rounding;
 }
 
-// Whether the motion is over at node k; 0 is the start. It is not if the bristle is beyond its bound by a double's rounding
-// alone and returns.
-static bool is_over(const Panel* p, int k) {
-    const Real start = p->sign[0].room, room = p->sign[k == 0 ? 1 : k].room;
-    const bool rounded = start > -10.0L * AS_DOUBLE * p->sums.length;
-    return p->sign[k].lead < 0.0L || (p->sign[k].room < 0.0L && !(rounded && room >= start));
-}
+// Whether the motion is over at node k; 0 is the start.
+static bool is_over(const Panel* p, int k) { return p->sign[k].lead < 0.0L || p->sign[k].room < 0.0L; }
 
 // Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
@@ -686,43 +641,37 @@ static bool hides(const World* w, const Panel* p) {
 static Real beyond(const void* context, Real t) {
     const March* march = context;
     const Panel p = panel(march, march->from, t, march->state.delta);
-    return -(march->at_bound ? p.sign[STAGES].room : p.sign[STAGES].lead);
+    return is_over(&p, STAGES) ? 1.0L : -1.0L;
 }
 
-// Takes an accurate panel, up to the motion's end if that lies in it.
-static void commit(March* march, Real a, Real b, const Panel* p) {
+// Takes an accurate panel, up to the motion's end if that lies in it; returns whether it does.
+static bool commit(March* march, Real a, Real b, const Panel* p) {
     int k = 0;
     while (k <= STAGES && !is_over(p, k)) {
         k++;
     }
     Panel part = *p;
     if (k <= STAGES) {
-        march->met = true;
-        march->at_bound = p->sign[k].room < 0.0L;
         march->from = a;
         const Real *x = the_rule()->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
         march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
+        march->at_bound = p->sign[0].room < 0.0L;
         if (!(march->met_at > a)) {
-            return;
+            return true;
         }
         part = panel(march, a, march->met_at, march->state.delta);
+        march->at_bound = part.sign[STAGES].room < 0.0L;
     }
     add(&march->sums, &part.sums);
     march->state.delta = part.sums.end;
+    return k <= STAGES;
 }
 
 // ---- Cuts of the step ----
 
-// Times in rising order.
-typedef struct {
-    Real time[80]; // at most 6 extremes, and 9 multiples of V_S in each of the 7 parts between them
-    int count;
-} Cuts;
-
 typedef struct {
     const World* w;
-    int order;  // of the derivative of half of V^2, on a line of V from 1 for V itself; 0: V^2 less the level
-    Real level; // m2/s2
+    int order; // of the derivative of half of V^2, on a line of V for V itself
 } Square;
 
 // On a ramp V is linear, and the product V V' tells its zero, too.
@@ -734,69 +683,23 @@ static Real square(const void* context, Real t) {
     const Square* of = context;
     Vector V[4];
     velocities(of->w, t, of->order, V);
-    if (of->order > 0 && is_on_line(of->w)) {
+    if (is_on_line(of->w)) {
         return creall(V[of->order - 1]);
     }
-    return of->order == 0   ? dot(V[0], V[0]) - of->level
-           : of->order == 1 ? dot(V[0], V[1])
+    return of->order == 1   ? dot(V[0], V[1])
            : of->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
                             : 3.0L * dot(V[1], V[2]) + dot(V[0], V[3]);
 }
 
-// Between the cuts; these go, but for the ends, unless they are kept.
-static void cut_at_zeros(Cuts* cuts, const Square* of, bool keep) {
-    const Cuts old = *cuts;
-    Real before = square(of, old.time[0]);
-    cuts->count = 1;
-    for (int k = 1; k < old.count; k++) {
-        const Real after = square(of, old.time[k]);
-        if (before * after < 0.0L) {
-            cuts->time[cuts->count++] = crossing(square, of, old.time[k - 1], old.time[k]);
-        }
-        if (keep || after == 0.0L || k == old.count - 1) {
-            cuts->time[cuts->count++] = old.time[k];
-        }
-        before = after;
+// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp.
+static Real end_of_piece(const World* w, Real to, Real t) {
+    const Real pieces = 8.0L * w->scene.f,
+               first = w->cycle / w->scene.f; // 1/s; s, since the start of the period
+    Real k = floorl((first + t) * pieces);
+    while (!(k / pieces - first > t)) {
+        k += 1.0L;
     }
-}
-
-// The extremes of |V| in a piece of the step, and multiples of V_S.
-static Cuts cuts_between(const World* w, Real a, Real b) {
-    static const Real OF_V_S[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    Cuts cuts = {{a, b}, 2};
-    // Between two zeros of one derivative lies at most one of the next. If V, V' and V'' are nearly 0 at once, the third
-    // derivative of V^2 has three zeros in a short time. So on a line V itself is looked at.
-    for (int order = 3; order >= 1; order--) {
-        cut_at_zeros(&cuts, &(Square){w, order, 0.0L}, order > 1 || is_on_line(w));
-    }
-    for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
-        const Real V = OF_V_S[m] * w->scene.V_S;
-        cut_at_zeros(&cuts, &(Square){w, 0, V * V}, true);
-    }
-    return cuts;
-}
-
-// The end of the piece of [from, to] that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a
-// closed contact whose load may fall or rise by decades they become shorter.
-static Real end_of_piece(const World* w, Real from, Real to, Real t) {
-    const ReferenceScene* s = &w->scene;
-    Real end = to;
-    if (w->ramp || vibrates(s)) {
-        const Real pieces = w->ramp ? 128.0L : 8.0L * s->f;
-        const Real first = w->ramp ? 0.0L : w->cycle / s->f; // s, since the start of the period
-        Real k = floorl((first + t) * pieces);
-        while (!(k / pieces - first > t)) {
-            k += 1.0L;
-        }
-        end = fminl(end, k / pieces - first);
-    }
-    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
-    for (int k = 1; k <= 60 && moves; k += 2) {
-        const Real part = ldexpl(to - from, -k);
-        end = from + part > t ? fminl(end, from + part) : end;
-        end = to - part > t ? fminl(end, to - part) : end;
-    }
-    return end;
+    return w->ramp || vibrates(&w->scene) ? fminl(to, k / pieces - first) : to;
 }
 
 // ---- The march through the step ----
@@ -811,31 +714,33 @@ static bool catches(const World* w, const At* at, Vector delta, bool pushed) {
 // that it is pushed then, and sticks if not. On a ramp from V = 0 the later V decides.
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
-    march->motion = STICKS;
+    march->slips = false;
     if (!has_bound(w)) {
+        march->state.broke = false;
         return;
     }
-    const At at = scene_at(w, a), later = scene_at(w, 0.5L * (a + b));
+    const At at = scene_at(w, a), later = scene_at(w, a + ldexpl(b - a, -20));
+    const Real D = march->state.broke ? at.D : at.D_static, length = length_of(march->state.delta);
+    if (length > D && length < (1.0L + 10.0L * AS_DOUBLE) * D) {
+        march->state.delta = along(march->state.delta, D); // it is beyond by its rounding alone
+    }
     const Real push = outward(w, &at, march->state.delta);
-    const Real rounding = ROUNDING * (w->top + fabsl(bound_rate(w, &at, false)));
+    const Real rounding = ROUNDING * (w->top + fabsl(at.D_rate));
     const bool pushed =
         push > rounding || (push >= -rounding && outward(w, &later, march->state.delta) > 0.0L);
     const bool no_V = w->ramp && dot(march->state.delta, at.input) == 0.0L;
     const Real slack = !w->ramp ? AS_DOUBLE : march->state.broke ? ON_BOUND : 0.0L;
-    const bool lies = length_of(march->state.delta) >= (1.0L - slack) * bound(w, &at, false);
-    if (pushed && lies && (march->state.broke || !has_static(w))) {
-        march->motion = SLIPS;
-    } else if (march->state.broke && catches(w, no_V ? &later : &at, march->state.delta, pushed)) {
-        march->motion = CATCHES;
-    }
-    march->state.broke = march->state.broke && march->motion != STICKS;
-    march->slipped = march->slipped || march->motion != STICKS;
+    const bool lies = length >= (1.0L - slack) * at.D;
+    march->slips = pushed && lies && (march->state.broke || !has_static(w));
+    march->state.broke =
+        march->state.broke && (march->slips || catches(w, no_V ? &later : &at, march->state.delta, pushed));
+    march->slipped = march->slipped || march->slips || march->state.broke;
 }
 
 // Break-away: the bristle drops along its direction, and its damping adds an impulse.
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
-    const Vector from = march->state.delta, to = along(from, bound(w, at, false));
+    const Vector from = march->state.delta, to = along(from, at->D);
     const Vector damping = w->scene.sigma_1 * (to - from);
     const Real lost = dot(from - to, from + to);
     march->sums.impulse += damping;
@@ -848,18 +753,17 @@ static void break_away(March* march, const At* at) {
 static void change_motion(March* march) {
     const World* w = march->w;
     const At at = scene_at(w, march->met_at);
-    bool slips = false;
+    march->slips = false;
     if (march->at_bound) {
         if (has_static(w) && !march->state.broke) {
             break_away(march, &at);
         } else {
-            march->state.delta = along(march->state.delta, bound(w, &at, false));
+            march->state.delta = along(march->state.delta, at.D);
         }
-        slips = outward(w, &at, march->state.delta) > 0.0L;
+        march->slips = outward(w, &at, march->state.delta) > 0.0L;
         march->slipped = true;
     }
-    march->state.broke = march->state.broke && (slips || catches(w, &at, march->state.delta, false));
-    march->motion = slips ? SLIPS : march->state.broke ? CATCHES : STICKS;
+    march->state.broke = march->state.broke && (march->slips || catches(w, &at, march->state.delta, false));
 }
 
 // Takes [a, b] in panels that are halved until one agrees with its two halves.
@@ -879,17 +783,41 @@ static void march_between(March* march, Real a, Real b) {
             end = middle;
             continue;
         }
-        march->met = false;
-        commit(march, a, middle, &left);
-        if (!march->met) {
-            commit(march, middle, end, &right);
-        }
+        const bool met = commit(march, a, middle, &left) || commit(march, middle, end, &right);
         const Real size = end - a;
-        a = march->met ? march->met_at : end;
+        a = met ? march->met_at : end;
         end = fminl(b, a + 2.0L * size);
-        if (march->met) {
+        if (met) {
             change_motion(march);
         }
+    }
+}
+
+// Whether the load falls or rises by decades in a piece, or Stribeck's curve by more than a part: the nodes of a long panel may
+// not see where.
+static bool is_steep(const World* w, Real a, Real b) {
+    const At first = scene_at(w, a), last = scene_at(w, b);
+    const Real low = fminl(first.F_n, last.F_n), high = fmaxl(first.F_n, last.F_n);
+    const Real V = length_of(first.input), V_end = length_of(last.input), V_S = w->scene.V_S;
+    const bool falls = has_curve(w) && fabsl(V_end - V) > V_S && fminl(V, V_end) < 9.0L * V_S;
+    return falls || high > 4.0L * low;
+}
+
+// Takes [a, b], cut at the zeros of derivatives of V^2 from this order down to the first, and in halves that are not steep.
+// Between two zeros of one derivative lies at most one of the next. If V, V' and V'' are nearly 0 at once, the third
+// derivative of V^2 has three zeros in a short time. So on a line V itself is looked at.
+static void march_piece(March* march, Real a, Real b, int order) {
+    const Square of = {march->w, order};
+    Real cut = 0.5L * (a + b);
+    if (order > 0) {
+        cut = square(&of, a) * square(&of, b) < 0.0L ? crossing(square, &of, a, b) : b;
+        march_piece(march, a, cut, order - 1);
+        march_piece(march, cut, b, order - 1);
+    } else if (cut > a && cut < b && is_steep(march->w, a, b)) {
+        march_piece(march, a, cut, 0);
+        march_piece(march, cut, b, 0);
+    } else {
+        march_between(march, a, b);
     }
 }
 
@@ -901,14 +829,11 @@ static void march_part(March* march, Real from, Real to, bool open) {
     to -= to < w->h ? edge : 0.0L;
     w->open = open;
     for (Real a = from; a < to;) {
-        const Real b = end_of_piece(w, from, to, a);
-        const Cuts cuts = cuts_between(w, a, b);
+        const Real b = end_of_piece(w, to, a);
         if (a == from) {
-            begin(march, a, cuts.time[1]);
+            begin(march, a, b);
         }
-        for (int k = 1; k < cuts.count; k++) {
-            march_between(march, cuts.time[k - 1], cuts.time[k]);
-        }
+        march_piece(march, a, b, 3);
         a = b;
     }
 }
@@ -941,10 +866,11 @@ static World ramp_between(const World* from, const World* to) {
     const ReferenceScene* end = &to->scene;
     w.ramp = true;
     w.h = 1.0L;
-    w.S = to->S;
     w.top = 0.0L;
     s->input = INPUT_SEPARATION;
     s->V_1 = s->V_2 = s->a_d = 0.0;
+    s->f = 1.0;
+    w.cycle = 0.0L;
     s->E_rate = end->E - s->E;
     w.d = separation(from);
     w.d_rate = separation(to) - w.d;
@@ -973,30 +899,30 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         const At after = scene_at(w, 0.0L);
         ramp.pushed = outward(w, &after, state->delta) > 0.0L;
         const At begin = scene_at(&ramp, 0.0L), end = scene_at(&ramp, 1.0L);
-        const Real D = bound(&ramp, &begin, false);
+        ramp.S = fmaxl(w->S, begin.sigma * length_of(state->delta));
         // Without static friction no state tells that it slips.
         const bool slid =
-            length_of(state->delta) >= (1.0L - ON_BOUND) * D && dot(state->delta, begin.input) > 0.0L;
+            length_of(state->delta) >= (1.0L - ON_BOUND) * begin.D && dot(state->delta, begin.input) > 0.0L;
         state->broke = past.excess == 0.0L ? slid && has_static(&ramp) : state->broke;
-        const Real D_end = bound(&ramp, &end, false);
-        if (state->broke && dot(state->delta, begin.input) <= 0.0L && fabsl(D_end - D) <= ON_BOUND * D) {
+        if (state->broke && dot(state->delta, begin.input) <= 0.0L &&
+            fabsl(end.D - begin.D) <= ON_BOUND * begin.D) {
             state->broke = has_static(w);
             return 0.0L; // nothing but rounding: the next motion decides whether it slips
         }
         // The bound rises again before the bristle has caught up: it is faster than the bristle.
-        state->broke = state->broke &&
-                       !(length_of(state->delta) < (1.0L - ON_BOUND) * D && D_end > (1.0L + ON_BOUND) * D);
+        state->broke = state->broke && !(length_of(state->delta) < (1.0L - ON_BOUND) * begin.D &&
+                                         end.D > (1.0L + ON_BOUND) * begin.D);
         const March march = march_from(&ramp, *state);
         *state = (State){march.state.delta, march.state.broke && has_static(w)};
         return march.sums.heat;
     }
     const At at = scene_at(w, 0.0L);
-    const Real length = length_of(state->delta), lies = bound(w, &at, false);
-    if (length <= (1.0L + 1e-11L) * bound(w, &at, !state->broke)) {
+    const Real length = length_of(state->delta);
+    if (length <= (1.0L + 1e-11L) * (state->broke ? at.D : at.D_static)) {
         return 0.0L;
     }
-    *state = (State){along(state->delta, lies), has_static(w)};
-    return 0.5L * at.sigma * (length - lies) * (length + lies);
+    *state = (State){along(state->delta, at.D), has_static(w)};
+    return 0.5L * at.sigma * (length - at.D) * (length + at.D);
 }
 
 // ---- Many equal periods ----
@@ -1008,22 +934,21 @@ typedef struct {
     Real m[ROWS][ROWS];
 } Map;
 
-static Map find_map(World* w, Real unit) {
+static Map find_map(const World* w, Real unit) {
     const Vector at[4] = {0.0L, 1.0L, -1.0L, CMPLXL(0.0L, 1.0L)};
     Map map = {.m = {{1.0L}}};
     Real of[4][5], way[4];
     Vector shift = 0.0L;
-    const bool bounded = w->bounded;
-    w->bounded = false; // of a period that touches none
+    World free = *w; // of a period that touches no bound
+    free.bounded = false;
     for (int k = 0; k < 4; k++) {
-        const March march = march_from(w, (State){unit * at[k], false});
+        const March march = march_from(&free, (State){unit * at[k], false});
         const Sums* s = &march.sums;
         shift = k == 0 ? (1.0L / unit * s->change) : shift;
         way[k] = creall(s->change) / unit;
         of[k][0] = creall(s->impulse), of[k][1] = cimagl(s->impulse), of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
     }
-    w->bounded = bounded;
     const Real x = w->elastic && w->scene.V == 0.0 ? 0.0L : creall(shift); // it does not drift
     const Real y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : cimagl(shift);
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
@@ -1116,30 +1041,60 @@ static bool are_equal(State a, State b, Real unit) {
 // A length [m] of deflections.
 static Real unit_of(const World* w) {
     const At at = scene_at(w, 0.0L);
-    return is_open(w, 0.0L) ? 1.0L : bound(w, &at, true);
+    return is_open(w, 0.0L) ? 1.0L : at.D_static;
+}
+
+// Newton's step to the fixed point of a period's map, from a state and its end after the period.
+static Vector newton_step(World* w, State state, Vector end, Real unit) {
+    const Real drift = length_of(CMPLXL(w->scene.V, w->scene.V_y)) / w->scene.f;
+    const Real step = 1e-3L * (w->elastic ? fminl(drift, unit) : unit);
+    const Vector x = state.delta - step, y = state.delta - CMPLXL(0.0L, step), miss = end - state.delta;
+    const Vector by_x = 1.0L / step * (end - march_from(w, (State){x, false}).state.delta);
+    const Vector by_y = 1.0L / step * (end - march_from(w, (State){y, false}).state.delta);
+    // of the columns 1 - by_x and i - by_y, by Cramer's rule
+    const Vector a = 1.0L - by_x, b = CMPLXL(0.0L, 1.0L) - by_y;
+    return CMPLXL(dot(across(b), miss), -dot(across(a), miss)) / dot(across(b), a);
 }
 
 // Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
-// smallest deflection at the end of one that slips. Returns false if none of the first MOST_CYCLE that slip
-// repeat.
-static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector* mean) {
+// smallest deflection at the end of one that slips. Small slips come to periods that repeat in few of Newton's steps, though
+// each changes the state by little; these are taken first if the last state does not depend on the start. Returns false if none
+// of the first MOST_CYCLE that slip repeat.
+static bool go_periods(const World* of, State* state, Real n, bool newton, Sums* sums, Vector* mean) {
     Period p = {.world = *of, .unit = unit_of(of)};
     World* w = &p.world;
     w->panels = 0.0L;
     Mark marks[MOST_CYCLE];
-    int count = 0;
+    int count = 0, steps = newton ? 60 : 0;
     for (Real done = 0.0L; done < n;) {
         const March march = march_from(w, *state);
+        if (steps > 0 && w->panels > MOST_OF_SETTLING) {
+            steps = 0;
+            w->panels = 0.0L;
+            continue;
+        }
         if (w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
             return false;
         }
-        if (!march.slipped) {
+        if (!march.slipped && (steps == 0 || w->elastic)) { // an elastic one drifts until it slips
             const Real passed = pass_untouched(&p, state, n - done, sums);
             if (isinf(n) && passed == FOR_EVER) {
                 *mean = w->scene.f * march_from(w, *state).sums.impulse;
                 return true;
             }
             done += passed;
+            continue;
+        }
+        if (steps > 0) {
+            const Vector miss = march.state.delta - state->delta;
+            const Vector step = newton_step(w, *state, march.state.delta, p.unit);
+            if (length_of(miss) <= 1e-15L * p.unit && !(length_of(step) > 1e-12L * p.unit)) {
+                *mean = w->scene.f * march.sums.impulse;
+                return true;
+            }
+            steps--;
+            const bool plain = steps % 4 == 0 || !(length_of(step) < 10.0L * p.unit); // there are kinks
+            state->delta += plain ? miss : step;
             continue;
         }
         add_times(sums, &march.sums, 1.0L);
@@ -1175,45 +1130,6 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
     return true;
 }
 
-// Newton's step to the fixed point of a period's map, from a state, its end and its miss after the period.
-static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
-    const Vector x = state.delta - step, y = state.delta - CMPLXL(0.0L, step);
-    const Vector by_x = 1.0L / step * (end - march_from(w, (State){x, false}).state.delta);
-    const Vector by_y = 1.0L / step * (end - march_from(w, (State){y, false}).state.delta);
-    // of the columns 1 - by_x and i - by_y, by Cramer's rule
-    const Vector a = 1.0L - by_x, b = CMPLXL(0.0L, 1.0L) - by_y;
-    return CMPLXL(dot(across(b), miss), -dot(across(a), miss)) / dot(across(b), a);
-}
-
-// The periodic state by Newton, if it does not depend on the start. Small slips come to it in few steps, though each of
-// them changes the state by little.
-static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Vector shift = CMPLXL(w->scene.V, w->scene.V_y) / w->scene.f;
-    const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
-    w->panels = 0.0L;
-    for (int k = 0; k < 60 && w->panels <= MOST_OF_SETTLING; k++) {
-        const March march = march_from(w, *state);
-        if (w->panels > MOST_PANELS) { // it did not come to the end of the period
-            return false;
-        }
-        const Vector miss = march.state.delta - state->delta;
-        if (w->elastic && !march.slipped) { // it drifts until it slips
-            Sums unused = {0};
-            Period p = {.world = *w, .unit = unit};
-            pass_untouched(&p, state, INFINITY, &unused);
-            continue;
-        }
-        const Vector newton = newton_step(w, *state, march.state.delta, miss, step);
-        if (length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
-            *mean = w->scene.f * march.sums.impulse;
-            return true;
-        }
-        const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
-        state->delta += (plain ? miss : newton);
-    }
-    return false;
-}
-
 // To the periodic state of held inputs, w of one period, or to sliding for ever; the mean force.
 static bool settle(World* w, State* state, Vector* mean) {
     const ReferenceScene* s = &w->scene;
@@ -1221,7 +1137,7 @@ static bool settle(World* w, State* state, Vector* mean) {
         Sums sums = {0};
         const bool drifts = s->V != 0.0 || s->V_y != 0.0, swings = s->V_1 != 0.0 || s->V_2 != 0.0;
         const bool one_state = w->elastic ? drifts && w->excess == 0.0L : drifts || swings;
-        return (one_state && settle_by_newton(w, state, mean)) || go_periods(w, state, INFINITY, &sums, mean);
+        return go_periods(w, state, INFINITY, one_state, &sums, mean);
     }
     const At at = scene_at(w, 0.0L);
     if (length_of(at.V) > 0.0L) {
@@ -1265,7 +1181,7 @@ static Vector force_at(const World* w, Real t, State state) {
         return along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L) + s->sigma_2 * at.V;
     }
     const bool slips = w->bounded && (state.broke || !has_static(w)) &&
-                       length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
+                       length_of(state.delta) >= (1.0L - ON_BOUND) * at.D &&
                        outward(w, &at, state.delta) > 0.0L;
     const Vector rate = rate_of(w, &at, state.delta, slips);
     return (at.sigma * state.delta + s->sigma_1 * rate) + s->sigma_2 * at.V;
@@ -1290,7 +1206,7 @@ static bool advance(World* w, State* state, Sums* sums) {
         Vector unused;
         period.h = 1.0L / s->f;
         const Real n = floorl(w->h * s->f);
-        known = go_periods(&period, state, n, sums, &unused);
+        known = go_periods(&period, state, n, false, sums, &unused);
         rest.h = w->h - n / s->f;
     }
     const March march = march_from(&rest, *state);
