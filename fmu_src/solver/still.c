@@ -8,18 +8,6 @@
 #include "model/root.h"
 #include "solver/events.h"
 
-// A slip with a constant force [N] up to the time end, at which the bristle is delta [m].
-static void slip_with(FcCrossing* crossing, double force, double delta, double end) {
-    const double t = crossing->at.t;
-    const double work = force * fc_drive_displacement(&crossing->interval->scene->drive, t, end);
-    const FcMap map = {.relaxation = 1.0,
-                       .offset = delta,
-                       .impulse_offset = force * (end - t),
-                       .work_offset = work,
-                       .heat_offset = work - force * (delta - crossing->along.offset)};
-    fc_append_known(crossing, &map, end);
-}
-
 // Coulomb's law in a part, in which V keeps its sign.
 static void take_coulomb(FcCrossing* crossing) {
     const double t = crossing->at.t;
@@ -48,8 +36,15 @@ static bool slips_surely(FcCrossing* crossing) {
     }
     const FcPlaneCoefficients at = fc_coefficients_at(crossing, end);
     const double force = side * at.static_limit;
+    const double delta = force / at.sigma;
+    const double work = force * fc_drive_displacement(&interval->scene->drive, t, end);
+    const FcMap map = {.relaxation = 1.0,
+                       .offset = delta,
+                       .impulse_offset = force * (end - t),
+                       .work_offset = work,
+                       .heat_offset = work - force * (delta - crossing->along.offset)};
     fc_note_slip(crossing, t, end, side);
-    slip_with(crossing, force, force / at.sigma, end);
+    fc_append_known(crossing, &map, end);
     return true;
 }
 

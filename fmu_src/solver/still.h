@@ -1,5 +1,5 @@
 // Motions along a line that are closed forms, from one event of V to the next: Coulomb's law with a constant limit, and
-// ElasticPlastic with a constant limit, while the bristle surely slips, and with a constant stiffness besides.
+// ElasticPlastic with a constant limit, while the bristle surely slips or, with a constant stiffness, sticks.
 #ifndef FC_SOLVER_STILL_H
 #define FC_SOLVER_STILL_H
 
