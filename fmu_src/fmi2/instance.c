@@ -1,7 +1,6 @@
 #include "fmi2/instance.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "fmi2/log.h"

@@ -13,6 +13,7 @@ enum { MOST_ROOT_STEPS = 200 };
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double* evaluations) {
+    assert(a <= b && close >= 0.0);
     const double rounding = DBL_EPSILON * fc_most(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;

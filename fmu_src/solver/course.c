@@ -1,7 +1,6 @@
 #include "solver/course.h"
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 

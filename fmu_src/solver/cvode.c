@@ -15,7 +15,6 @@
 
 #include <assert.h>
 #include <cvode/cvode.h>
-#include <float.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
 #include <stdlib.h>

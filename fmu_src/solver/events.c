@@ -1,7 +1,6 @@
 #include "solver/events.h"
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 
 #include "model/extremes.h"

@@ -5,7 +5,7 @@
 #include "model/extremes.h"
 #include "solver/leap_block.h"
 #include "solver/march.h"
-#include "solver/tuning.h"
+#include "solver/pieces.h"
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
 // one by one.

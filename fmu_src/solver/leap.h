@@ -10,7 +10,7 @@
 #ifndef FC_SOLVER_LEAP_H
 #define FC_SOLVER_LEAP_H
 
-#include "solver/pieces.h"
+#include "solver/solver.h"
 
 // Takes *total over whole periods of a scene with moving inputs; returns how many it took, fewer if they cost too much.
 double fc_leap(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total);

@@ -10,6 +10,7 @@
 #include "model/regime.h"
 #include "model/root.h"
 #include "solver/march.h"
+#include "solver/pieces.h"
 #include "solver/tuning.h"
 
 // FEWEST_POINTS, MOST_POINTS: the numbers of points of the interpolation. MOST_PART: the largest part of a
@@ -471,6 +472,7 @@ static bool meets_in_some(const Block* block, const Place* without_room, int pla
 }
 
 bool fc_block_take(const FcBlock* of, FcStepResult* total) {
+    assert(of->count > 1.0 && of->phase >= 0.0 && of->first >= of->warm_up);
     Block found = {.of = of,
                    .period = 1.0 / of->scene->drive.vibration.f,
                    .start = fc_bristle_of(total),

@@ -9,7 +9,7 @@
 #ifndef FC_SOLVER_LEAP_BLOCK_H
 #define FC_SOLVER_LEAP_BLOCK_H
 
-#include "solver/pieces.h"
+#include "solver/solver.h"
 
 // Periods that begin `phase` [s] after those of the scene.
 typedef struct {

@@ -1,7 +1,6 @@
 #include "solver/method.h"
 
 #include <assert.h>
-#include <math.h>
 
 #include "model/regime.h"
 #include "solver/closed_form.h"

@@ -1,7 +1,6 @@
 #include "solver/pieces.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stddef.h>
 
 #include "model/extremes.h"

@@ -1,7 +1,6 @@
 #include "solver/rise.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 

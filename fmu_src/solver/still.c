@@ -1,10 +1,7 @@
 #include "solver/still.h"
 
-#include <assert.h>
-#include <math.h>
 
 #include "model/extremes.h"
-#include "model/regime.h"
 #include "model/root.h"
 #include "solver/events.h"
 
