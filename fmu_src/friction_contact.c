@@ -442,7 +442,8 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
         return fc_message_set(
             message,
             "initialState = Settled needs more than %.0e evaluations of a vibration period: vibration.a_d = "
-            "%.9g m at d = %.9g m moves the contact over too many orders of magnitude",
+            "%.9g m at d = %.9g m moves the contact over too many orders of magnitude, or "
+            "no period is like another",
             FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
     }
     if (!update_outputs(&fresh, message) || !fc_friction_contact_prepare(&fresh, v->solver.method, message)) {

@@ -59,7 +59,8 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
         return fc_message_set(message,
                               "F_t_settled, F_y_settled or a derivative of them needs more than %.0e "
                               "evaluations: vibration.a_d = %.9g m at "
-                              "d = %.9g m moves the contact over too many orders of magnitude",
+                              "d = %.9g m moves the contact over too many orders of magnitude, or "
+                              "no period is like another",
                               FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
     }
     return true;
