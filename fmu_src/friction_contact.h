@@ -1,4 +1,4 @@
-// One vibrating contact: its variables, its state, and its steps. Together with model/derivatives.h it is the
+// One vibrating contact: its variables, its state, and its steps. Together with model/regime.h it is the
 // interface of the physics to FMI.
 //
 // FcVariables has every variable of modelDescription.xml under its own name: contact.R_q is the C expression

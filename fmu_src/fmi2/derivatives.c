@@ -9,7 +9,7 @@
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
-#include "model/derivatives.h"
+#include "model/regime.h"
 #include "model/extremes.h"
 #include "settled_force.h"
 

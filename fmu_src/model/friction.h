@@ -57,9 +57,6 @@ static inline bool fc_limit_follows_load(const FcFriction* friction) {
     return friction->limit == FC_LIMIT_LOAD;
 }
 
-// sgn V.
-static inline double fc_sign(double V) { return V > 0.0 ? 1.0 : V < 0.0 ? -1.0 : 0.0; }
-
 // Whether the law uses staticRatio.
 static inline bool fc_may_have_static_friction(const FcFriction* friction) {
     return friction->model == FC_LUGRE || friction->model == FC_ELASTIC_PLASTIC;

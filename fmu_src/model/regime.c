@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "model/derivatives.h"
+#include "model/special.h"
 
 static FcVector times(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
 
@@ -182,6 +182,31 @@ FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle) {
                                 .W_f = power,
                                 .Q_f = power - fc_product(at.force, at.delta_rate),
                                 .delta_y = at.state_rate.y}};
+}
+
+// a + factor b.
+static FcContactLogSlope slope_plus(FcContactLogSlope a, double factor, FcContactLogSlope b) {
+    return (FcContactLogSlope){a.sigma + factor * b.sigma, a.A_r + factor * b.A_r, a.F_n + factor * b.F_n};
+}
+
+FcContactLogSlope fc_contact_along(const FcScene* scene, const FcDirection* along) {
+    FcContactLogSlope change = {.sigma = along->log_stiffness};
+    if (scene->is_open) {
+        return change;
+    }
+    const FcDrive* drive = &scene->drive;
+    const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, 0.0));
+    const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, drive->E.value);
+    double d = along->swing;
+    if (scene->contact->input == FC_CONTACT_SEPARATION) {
+        d += along->d;
+    } else { // d = (ln F_n(0) - ln load + ...) / decay
+        const double decay = scene->at_E.decay;
+        d += (by_E.F_n * along->E - along->load / drive->load.value) / decay;
+        d += fc_bessel_ratio(decay * drive->vibration.a_d) * along->a_d;
+    }
+    change = along->E != 0.0 ? slope_plus(change, along->E, by_E) : change;
+    return d != 0.0 ? slope_plus(change, d, by_d) : change;
 }
 
 // The derivative of ln s, Stribeck's curve at V, along the direction.

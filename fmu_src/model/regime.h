@@ -95,6 +95,10 @@ typedef struct {
     double bound_rate;    // m/s, of the rate of the bound, for a bristle that slips
 } FcDirection;
 
+// Derivatives of ln(sigma), ln(A_r) and ln(F_n) along a direction at the start of a scene. With a load they include the
+// motion of the separation. Those of F_n and A_r are 0 for an open contact.
+FcContactLogSlope fc_contact_along(const FcScene* scene, const FcDirection* along);
+
 // The derivative of the motion along the direction, by the chain rule.
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along);
 

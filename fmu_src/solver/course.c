@@ -296,7 +296,8 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MOST_PARTS], int count,
                    double h, const Center* before, const Center* after) {
     const Center left = seen_from_gap(before, start, end);
     const Center right = seen_from_gap(after, start, end);
-    const int side = plane->on_line ? (int)fc_sign(fc_drive_V(&plane->scene->drive, 0.5 * (start + end))) : 0;
+    const double V = fc_drive_V(&plane->scene->drive, 0.5 * (start + end));
+    const int side = plane->on_line ? (V > 0.0) - (V < 0.0) : 0;
     double middle = isinf(right.length)  ? end
                     : isinf(left.length) ? start
                                          : fc_least(fc_most(0.5 * (left.time + right.time), start), end);
