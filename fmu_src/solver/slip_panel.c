@@ -16,11 +16,22 @@ enum { MOST_ITERATIONS = 12 };
 // finest tolerance, its multiple if a diagonal is cut and the method is of first order.
 static const double LAST_STEP = 1e-10;
 
+// First values of the angles: on the way from a_0 to the direction of V, to which a slip leads over some D.
+static void guess_angles(const FcNodes* nodes, const FcPlaneBound* bound, double a_0, double* a) {
+    FcVector before = {cos(a_0), sin(a_0)};
+    double turned = 0.0;
+    for (int i = 0; i < STAGES; i++) {
+        const FcVector V = {nodes->V[i], nodes->V_y[i]};
+        turned += atan2(fc_across(before, V), fc_product(before, V));
+        before = V;
+        const double z = (0.5 + FC_RADAU.node[i]) * nodes->tau[i] * nodes->speed[i] / bound[i].D;
+        a[i] = a_0 - turned * expm1(-z);
+    }
+}
+
 // The angles a at the stages, beginning at a_0, with the slope tau / D (V_y cos a - V sin a).
 static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double a_0, double* a) {
-    for (int i = 0; i < STAGES; i++) {
-        a[i] = a_0;
-    }
+    guess_angles(nodes, bound, a_0, a);
     for (int tries = 0; tries < MOST_ITERATIONS; tries++) {
         double diagonal[STAGES];
         double left[STAGES];
