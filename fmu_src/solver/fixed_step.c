@@ -32,42 +32,46 @@
 #define SAMPLES_PER_PERIOD 256.0
 #define MOST_RATE_SAMPLES 1e6
 
-// The rates of the deflection and of the integrals at that deflection [m].
-static FcStepResult slope_at(const FcCoefficients* at, double delta) {
+// The rates of the deflection and of the integrals of FcStepResult.
+typedef struct {
+    double delta, impulse, work, heat, drag;
+} Rates;
+
+static Rates rates_at(const FcCoefficients* at, double delta) {
     const double F = at->sigma * delta;
     const double slip = fc_relaxation_rate(at) * delta; // V - delta'
     const double rate = at->V - slip;
-    return (FcStepResult){
-        .delta = rate, .impulse = F, .work = F * at->V, .heat = F * slip, .drag = rate * at->V};
+    return (Rates){rate, F, F * at->V, F * slip, rate * at->V};
 }
 
-static FcStepResult plus(FcStepResult y, double h, FcStepResult slope) {
-    y.delta += h * slope.delta;
-    y.impulse += h * slope.impulse;
-    y.work += h * slope.work;
-    y.heat += h * slope.heat;
-    y.drag += h * slope.drag;
-    return y;
+static void add(FcStepResult* y, double h, Rates rates) {
+    y->delta += h * rates.delta;
+    y->impulse += h * rates.impulse;
+    y->work += h * rates.work;
+    y->heat += h * rates.heat;
+    y->drag += h * rates.drag;
 }
 
-static FcStepResult explicit_euler(FcStepResult y, double h, const FcCoefficients* start) {
-    return plus(y, h, slope_at(start, y.delta));
+static void explicit_euler(FcStepResult* y, double h, const FcCoefficients* start) {
+    add(y, h, rates_at(start, y->delta));
 }
 
-static FcStepResult backward_euler(FcStepResult y, double h, const FcCoefficients* end) {
-    const double delta = (y.delta + h * end->V) / (1.0 + h * fc_relaxation_rate(end));
-    FcStepResult next = plus(y, h, slope_at(end, delta));
-    next.delta = delta;
-    return next;
+static void backward_euler(FcStepResult* y, double h, const FcCoefficients* end) {
+    const double delta = (y->delta + h * end->V) / (1.0 + h * fc_relaxation_rate(end));
+    add(y, h, rates_at(end, delta));
+    y->delta = delta;
 }
 
-static FcStepResult rk4(FcStepResult y, double h, const FcCoefficients* start, const FcCoefficients* middle,
-                        const FcCoefficients* end) {
-    const FcStepResult k1 = slope_at(start, y.delta);
-    const FcStepResult k2 = slope_at(middle, y.delta + 0.5 * h * k1.delta);
-    const FcStepResult k3 = slope_at(middle, y.delta + 0.5 * h * k2.delta);
-    const FcStepResult k4 = slope_at(end, y.delta + h * k3.delta);
-    return plus(plus(plus(plus(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4);
+static void rk4(FcStepResult* y, double h, const FcCoefficients* start, const FcCoefficients* middle,
+                const FcCoefficients* end) {
+    const Rates k1 = rates_at(start, y->delta);
+    const Rates k2 = rates_at(middle, y->delta + 0.5 * h * k1.delta);
+    const Rates k3 = rates_at(middle, y->delta + 0.5 * h * k2.delta);
+    const Rates k4 = rates_at(end, y->delta + h * k3.delta);
+    add(y, h / 6.0, k1);
+    add(y, h / 3.0, k2);
+    add(y, h / 3.0, k3);
+    add(y, h / 6.0, k4);
 }
 
 // The largest sigma |V| / g over [0, h] [1/s], sampled.
@@ -105,24 +109,25 @@ static bool check_stability(const FcScene* scene, const char* method, double lim
 
 // A step from t to t_next; *start are the coefficients at t, and become those at t_next, if the method uses
 // both.
-static FcStepResult step_of(FcMethod method, const FcScene* scene, FcStepResult y, double t, double t_next,
-                            FcCoefficients* start) {
+static void take_step(FcMethod method, const FcScene* scene, FcStepResult* y, double t, double t_next,
+                      FcCoefficients* start) {
     const double h = t_next - t;
     if (method == FC_METHOD_EXPLICIT_EULER) {
         const FcCoefficients at = fc_scene_coefficients(scene, t);
-        return explicit_euler(y, h, &at);
+        explicit_euler(y, h, &at);
+        return;
     }
     const FcCoefficients end = fc_scene_coefficients(scene, t_next);
-    const FcCoefficients from = *start;
-    *start = end;
     if (method == FC_METHOD_BACKWARD_EULER) {
-        return backward_euler(y, h, &end);
+        backward_euler(y, h, &end);
+    } else if (method == FC_METHOD_TRAPEZOID) {
+        explicit_euler(y, 0.5 * h, start);
+        backward_euler(y, 0.5 * h, &end);
+    } else {
+        const FcCoefficients middle = fc_scene_coefficients(scene, t + 0.5 * h);
+        rk4(y, h, start, &middle, &end);
     }
-    if (method == FC_METHOD_TRAPEZOID) {
-        return backward_euler(explicit_euler(y, 0.5 * h, &from), 0.5 * h, &end);
-    }
-    const FcCoefficients middle = fc_scene_coefficients(scene, t + 0.5 * h);
-    return rk4(y, h, &from, &middle, &end);
+    *start = end;
 }
 
 static double steps_in(double h, double size) { return fc_most(1.0, ceil(h / size - STEP_ROUNDING)); }
@@ -160,7 +165,7 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
     }
     for (double i = 1.0; i <= steps; i += 1.0) {
         const double t_next = h * (i / steps);
-        *result = step_of(method, scene, *result, h * ((i - 1.0) / steps), t_next, &start);
+        take_step(method, scene, result, h * ((i - 1.0) / steps), t_next, &start);
         if (bounded) { // one beyond its bound is moved onto it
             const FcScene end = fc_scene_from(scene, t_next);
             fc_take_onto_bound(&end, result);
