@@ -25,13 +25,19 @@ static bool fail_stiffness(FcMessage* message, double d, double E) {
         d, E);
 }
 
+static bool are_equal(const FcContactParameters* a, const FcContactParameters* b) {
+    return a->model == b->model && a->input == b->input && a->sigma == b->sigma &&
+           a->stiffnessScale == b->stiffnessScale && a->R_q == b->R_q && a->R == b->R && a->eta == b->eta &&
+           a->A_n == b->A_n && a->nu == b->nu && a->Y == b->Y && a->c == b->c && a->lambda == b->lambda;
+}
+
 _Static_assert(sizeof(FcContactParameters) == 10 * sizeof(double) + 2 * sizeof(int),
-               "FcContactParameters are compared as bytes, without gaps between them");
+               "a new member of FcContactParameters must be compared in are_equal");
 
 // The contact at the modulus E [Pa] with the present parameters: computed anew if they or E have changed.
 static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E) {
     const FcContactParameters* parameters = &contact->state.variables.contact;
-    if (contact->at_E_E != E || memcmp(&contact->at_E_of, parameters, sizeof *parameters) != 0) {
+    if (contact->at_E_E != E || !are_equal(&contact->at_E_of, parameters)) {
         contact->at_E = fc_contact_at_modulus(parameters, E);
         contact->at_E_of = *parameters;
         contact->at_E_E = E;

@@ -9,8 +9,8 @@
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
-#include "model/regime.h"
 #include "model/extremes.h"
+#include "model/regime.h"
 #include "settled_force.h"
 
 // The variable of the reference if it has the causality; otherwise NULL, after logging the reason.

@@ -1,6 +1,5 @@
 #include "solver/still.h"
 
-
 #include "model/extremes.h"
 #include "model/root.h"
 #include "solver/events.h"
