@@ -11,8 +11,8 @@ import pytest
 from workshop.build import build_targets
 
 SCENES = Path(__file__).with_name("scenes.txt")
-# Evaluations a sequence: the plan of panels decides them. Without optimization they are the same, but near a line, where
-# rounding decides a few events, 0.7 % more.
+# Evaluations a sequence: the plan of panels decides them. Without optimization they are the same, but 0.7 %
+# more near a line, where rounding decides a few events.
 WORK = {"line": 75.873, "plane": 662.90, "near-line": 27.105, "found": 317.99}
 
 
