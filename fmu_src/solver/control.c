@@ -145,7 +145,10 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     const double z = behind > 0.0 ? FC_RELAXATION * rough_exp(behind * (-1.0 / 7.0)) : INFINITY;
     double span = control->span;
     double longest = control->longest;
-    if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
+    if (kind == FC_STICKS && at->per_path > 0.0) {
+        span = fc_least(span, fc_time_to_move(at->rate / at->per_path, part->most.of[1],
+                                              FC_MOST_OF_BOUND / at->per_path));
+    } else if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
         // A settled force is constant but for its lag, and the integrals of the constant are exact.
         const double lag = lag_for(control, in, x < 0.0 ? 0.0 : at->rate);
         const double part_of_lag = fc_most(control->interval->tolerance, fc_least(1.0, lag));

@@ -5,8 +5,6 @@
 #include "model/plane.h"
 #include "solver/solver.h"
 
-// ---- the methods besides the default (march.h) ----
-
 // Take *result over a step of h [s] >= 0. They return false, with *message filled and *result
 // unchanged, if they refuse the step: an explicit method would be unstable, a number is not finite, the work
 // is too much, or CVODE fails.
@@ -23,8 +21,6 @@ FcCvode* fc_cvode_new(FcMessage* message);
 void fc_cvode_free(FcCvode* solver);
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message);
-
-// ---- the choice among all ----
 
 // The step [0, h], h [s] >= 0, of a scene in which nothing moves, by a closed form; false if there is none for
 // this scene and this method. contact is the scene's at its start.

@@ -45,6 +45,9 @@ static const double FC_LONGEST = 6.0;
 // of it costs nothing.
 static const double FC_SMOOTH = 12.0;
 
+// The farthest way of a stuck bristle in a panel, in radii of its bound: so far the points show a meeting. 1.00, 1.00.
+static const double FC_MOST_OF_BOUND = 4.0;
+
 // The velocity over V_S beyond which a part of the interval has the variable of the layer, not of the curve:
 // e^-36 of the curve is left. Two thirds of it cost 1.005, 1.5 times of it 1.001.
 static const double FC_END_OF_CURVE = 6.0;
