@@ -68,9 +68,8 @@ Scenes = list[tuple[Case, float, np.ndarray, np.ndarray]]  # with a start and wh
 
 def scenes(progress: Progress) -> Scenes:
     found = []
-    for (name, setting), case in progress.track(
-        [*product(SETTINGS.items(), cases())], description="The reference"
-    ):
+    runs = [*product(SETTINGS.items(), cases())]
+    for (name, setting), case in progress.track(runs, description="The reference"):
         values, start = {**case.start_values, **setting}, case.starts[-1]  # not at a whole phase
         changed = replace(case, name=f"{name}, {case.name}", start_values=values)
         found.append((changed, start, *expected(changed, start)))
