@@ -179,6 +179,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx
     }
     FcVariables* v = &instance->contact.state.variables;
     v->solver.evaluations += 1.0;
+    _Static_assert(sizeof v->der == FC_STATE_COUNT * sizeof(double), "one rate for each state");
     memcpy(derivatives, &v->der, sizeof v->der); // in the order of ModelStructure/Derivatives, too
     return fmi2OK;
 }

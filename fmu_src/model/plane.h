@@ -22,6 +22,11 @@ static inline double fc_product(FcVector a, FcVector b) { return a.x * b.x + a.y
 static inline FcVector fc_plus(FcVector a, double factor, FcVector b) {
     return (FcVector){a.x + factor * b.x, a.y + factor * b.y};
 }
+// a / |a|; if a is 0, the other vector.
+static inline FcVector fc_direction(FcVector a, FcVector otherwise) {
+    const double size = hypot(a.x, a.y);
+    return size > 0.0 ? (FcVector){a.x / size, a.y / size} : otherwise;
+}
 // |a| |b| times the sine of the angle from a to b.
 static inline double fc_across(FcVector a, FcVector b) { return a.x * b.y - a.y * b.x; }
 

@@ -7,10 +7,7 @@
 
 static FcVector times(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
 
-static FcVector direction(FcVector a) {
-    const double size = hypot(a.x, a.y);
-    return size > 0.0 ? (FcVector){a.x / size, a.y / size} : (FcVector){0.0, 0.0};
-}
+static FcVector direction(FcVector a) { return fc_direction(a, (FcVector){0.0, 0.0}); }
 
 // The part of a that is perpendicular to n, |n| = 1.
 static FcVector perpendicular(FcVector a, FcVector n) { return fc_plus(a, -fc_product(a, n), n); }

@@ -18,7 +18,7 @@ void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, do
     }
     const FcVector V = {at.V, fc_drive_V_y(&scene->drive, 0.0)};
     const double speed = hypot(V.x, V.y);
-    const FcVector n = speed > 0.0 ? (FcVector){V.x / speed, V.y / speed} : (FcVector){1.0, 0.0};
+    const FcVector n = fc_direction(V, (FcVector){1.0, 0.0});
     at.limit *= fc_stribeck(scene->friction, speed) / fc_stribeck(scene->friction, at.V);
     at.V = speed;
     const FcMap along = fc_map_of_constant_scene(&at, h);

@@ -22,10 +22,7 @@ enum { MOST_CUTS = 40 };
 
 // ---- the push of a bristle that slips ----
 
-static FcVector direction(FcVector delta) {
-    const double size = hypot(delta.x, delta.y);
-    return size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
-}
+static FcVector direction(FcVector delta) { return fc_direction(delta, (FcVector){1.0, 0.0}); }
 
 // The rounding of a push that is known at the points; the curve may move the bound faster than the limit does.
 static double rounding_of_push(const FcCrossing* crossing, const double push[POINTS]) {
@@ -58,13 +55,13 @@ bool fc_begin_slip(FcCrossing* crossing, bool surely) {
     const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
     const FcPlaneBound held = fc_plane_bound(plane, &at, crossing->slips, t, phase);
-    const FcVector n = direction(fc_crossing_delta(crossing));
+    const FcVector delta = fc_crossing_delta(crossing);
+    const FcVector n = direction(delta);
     const double push = fc_plane_push(plane, &at, &held, n);
     if (!surely && !(push > ROUNDING_OF_PUSH * fc_largest_push(crossing))) {
         return false;
     }
     // The energy that it loses is heat, also that of its small excess over the bound.
-    const FcVector delta = fc_crossing_delta(crossing);
     const double size = hypot(delta.x, delta.y);
     const double D = fc_plane_radius(plane, &at, 1);
     crossing->heat += 0.5 * at.sigma * (size - D) * (size + D);

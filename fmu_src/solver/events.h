@@ -5,7 +5,7 @@
 //     slipping inside its bound, after a jump  --the push is negative-->                                   stuck
 //
 // The push is the velocity at which the bristle would leave its bound outwards (model/regime.h). The polynomial through a
-// panel's points finds an event; functions that are known at any time place it.
+// panel's points finds an event and places it; the meeting of a stuck bristle is placed by its exact motion.
 #ifndef FC_SOLVER_EVENTS_H
 #define FC_SOLVER_EVENTS_H
 

@@ -77,12 +77,15 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
         bound[i] = fc_plane_bound(plane, &at[i], 1, nodes->t[i], nodes->phase[i]);
         n[i] = (FcVector){from->delta.x < 0.0 ? -1.0 : 1.0, 0.0};
     }
-    double a[POINTS] = {[START] = atan2(from->delta.y, from->delta.x)};
-    if (!plane->on_line && !find_angles(nodes, bound, a[START], a)) {
-        return false;
-    }
-    for (int i = 0; i < POINTS && !plane->on_line; i++) {
-        n[i] = (FcVector){cos(a[i]), sin(a[i])};
+    if (!plane->on_line) {
+        double a[POINTS];
+        a[START] = atan2(from->delta.y, from->delta.x);
+        if (!find_angles(nodes, bound, a[START], a)) {
+            return false;
+        }
+        for (int i = 0; i < POINTS; i++) {
+            n[i] = (FcVector){cos(a[i]), sin(a[i])};
+        }
     }
     double FC_PAIRED slope[POINTS];
     double F_x[POINTS];

@@ -48,7 +48,8 @@ typedef struct {
     double delta_y;     // m     across, as delta, lost and impulse are along; work, heat and drag are of both
     double lost_y;      // m
     double impulse_y;   // N s
-    FcVector by_start[2]; // in the plane, derivatives of (delta, delta_y) by delta and delta_y at the start
+    FcVector by_start
+        [2]; // in the plane, without static friction: derivatives of delta, delta_y by those at the start
 } FcStepResult;
 
 static inline FcBristle fc_bristle_of(const FcStepResult* result) {
