@@ -16,7 +16,7 @@ static const double FC_SAFETY = 4.0;
 
 // The estimate that is accepted, over the allowed error: for the mean, in which the errors of panels differ in sign; at
 // the end; and the factor on both where force and limit follow a Stribeck curve, whose estimates are smaller. 1.01, 1.00; 1.01, 0.99;
-// 1.00, 1.00.
+// 1.01, 1.00.
 static const double FC_SHARE_OF_MEAN = 10.0;
 static const double FC_SHARE_OF_END = 0.2;
 static const double FC_SHARE_IN_CURVE = 0.1;
@@ -35,17 +35,17 @@ static const double FC_SHARE_OF_LEAP = 0.2;
 // The part of the strip in which the force is analytic that a panel takes (control.c): 1.03, 1.02.
 static const double FC_PART_OF_STRIP = 0.4;
 
-// The relaxation in a panel, times the seventh root of its transient over the allowed error: 1.01, 1.01.
+// The relaxation in a panel, times the seventh root of its transient over the allowed error: 1.00, 1.01.
 static const double FC_RELAXATION = 60.0;
 
 // The longest panel in the variable u: 1.00, 1.00.
 static const double FC_LONGEST = 6.0;
 
-// The longest panel in time, over that in which the contact moves by 1, for a tolerance of 1. 1.08 at half of it; 1.5 times
+// The longest panel in time, over that in which the contact moves by 1, for a tolerance of 1. 1.07 at half of it; 1.5 times
 // of it costs nothing.
 static const double FC_SMOOTH = 12.0;
 
-// The farthest way of a stuck bristle in a panel, in radii of its bound: so far the points show a meeting. 1.00, 1.00.
+// The farthest way of a stuck bristle in a panel, in radii of its bound: so far the points show a meeting. 1.01, 1.00.
 static const double FC_MOST_OF_BOUND = 4.0;
 
 // The velocity over V_S beyond which a part of the interval has the variable of the layer, not of the curve:
