@@ -4,6 +4,7 @@
 #define _GNU_SOURCE // RTLD_DEFAULT
 #include <dlfcn.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "fmi2_library.h"
@@ -78,36 +79,54 @@ static long allocations(void) {
     return counted ? counted() : -1;
 }
 
-static void run_job(const Job* job, Run* run) {
-    const long at_first = allocations();
-    Fmi2Instance instance;
-    const bool made = fmi2_instance_make(&instance, &fmu.library, "bench", fmu.guid, fmu.resources);
-    fmi2Component c = instance.component;
-    if (!made || !initialize(c, job)) {
-        fail(&instance, run, 0);
-    } else {
-        fmi2ValueReference reference[JOB_INPUTS];
-        for (int i = 0; i < job->inputs; i++) {
-            reference[i] = job->input[i].reference;
-        }
-        const long at_start = allocations();
-        const double cpu = cpu_seconds();
-        for (int k = 0; k < job->count; k++) {
-            if (step(c, job, reference, k, run->row + k * job->outputs) > fmi2Warning) {
-                fail(&instance, run, k);
-                break;
+// All steps of the job, in which the instances take turns.
+static void take_steps(Fmi2Instance* instances, const Job* job, Run* run) {
+    fmi2ValueReference reference[JOB_INPUTS];
+    for (int i = 0; i < job->inputs; i++) {
+        reference[i] = job->input[i].reference;
+    }
+    for (int k = 0; k < job->count; k++) {
+        for (int i = 0; i < job->instances; i++) {
+            if (step(instances[i].component, job, reference, k, run->row + k * job->outputs) > fmi2Warning) {
+                fail(&instances[i], run, k);
+                return;
             }
         }
+    }
+}
+
+static void run_job(const Job* job, Run* run) {
+    Fmi2Instance* instances = calloc((size_t)job->instances, sizeof *instances);
+    if (!instances) {
+        fprintf(stderr, "error: no memory for the instances of the job\n");
+        exit(2);
+    }
+    const long at_first = allocations();
+    int made = 0;
+    while (made < job->instances && run->failed_at < 0) {
+        Fmi2Instance* instance = &instances[made++];
+        if (!fmi2_instance_make(instance, &fmu.library, "bench", fmu.guid, fmu.resources) ||
+            !initialize(instance->component, job)) {
+            fail(instance, run, 0);
+        }
+    }
+    if (run->failed_at < 0) {
+        const long at_start = allocations();
+        const double cpu = cpu_seconds();
+        take_steps(instances, job, run);
         run->cpu = cpu_seconds() - cpu;
         if (at_start >= 0) {
             run->allocations = allocations() - at_start;
             run->allocations_to_start = at_start - at_first;
         }
         if (job->counts_evaluations && run->failed_at < 0) {
-            fmu.library.GetReal(c, &job->evaluations, 1, &run->evaluations);
+            fmu.library.GetReal(instances[0].component, &job->evaluations, 1, &run->evaluations);
         }
     }
-    fmi2_instance_free(&instance);
+    for (int i = 0; i < made; i++) {
+        fmi2_instance_free(&instances[i]);
+    }
+    free(instances);
 }
 
 int main(int argc, char** argv) {

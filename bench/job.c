@@ -62,7 +62,7 @@ static void read_value(Job* job, const char* keyword) {
 }
 
 Job job_read(void) {
-    Job job = {.count = 1, .step = 1.0};
+    Job job = {.count = 1, .step = 1.0, .instances = 1};
     char keyword[32];
     while (scanf("%31s", keyword) == 1) {
         if (strcmp(keyword, "start") == 0) {
@@ -73,6 +73,8 @@ Job job_read(void) {
             job.budget = read_number(keyword);
         } else if (strcmp(keyword, "count") == 0) {
             job.count = (int)read_number(keyword);
+        } else if (strcmp(keyword, "instances") == 0) {
+            job.instances = (int)read_number(keyword);
         } else if (strcmp(keyword, "calls") == 0) {
             job.calls = (int)read_number(keyword);
         } else if (strcmp(keyword, "linear") == 0) {

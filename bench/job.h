@@ -5,6 +5,7 @@
 //     count 20            steps
 //     budget 0.05         s of CPU time for repeating the run, which is done at least three times
 //     calls 1             every step has the length 0 and stays at the start: what the calls of the FMU cost
+//     instances 10000     of the FMU, each of which makes step k before one makes step k + 1; 1 if it is not given
 //     linear 1            inputs move linearly between their samples; 0: they are held over a step
 //     integer 27 1        start value: value reference, value
 //     real 28 1e-6        the same
@@ -39,6 +40,7 @@ typedef struct {
     double step;   // s
     double budget; // s
     int count;
+    int instances;
     int calls;
     int linear;
     int values;

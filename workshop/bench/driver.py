@@ -40,12 +40,13 @@ class Job:
     linear: bool = False  # inputs move linearly between their samples; else held over a step
     budget: float = 0.02  # s of CPU time for repetitions
     calls: bool = False  # steps of the length 0: what the calls of the FMU cost
+    instances: int = 1  # that take turns, each with all of the steps
 
     def lines(self, references: Mapping[str, int]) -> list[str]:
         """For bench/job.h, without start values and outputs; references of the inputs."""
         steps = f"start {self.start!r} step {self.step!r} count {self.count} budget {self.budget!r}"
         return [
-            f"{steps} calls {int(self.calls)} linear {int(self.linear)}",
+            f"{steps} calls {int(self.calls)} linear {int(self.linear)} instances {self.instances}",
             *(
                 f"input {references[name]} {len(samples)} {' '.join(map(str, samples.tolist()))}"
                 for name, samples in self.inputs.items()
@@ -59,7 +60,7 @@ class Outcome:
 
     F: np.ndarray
     F_mean: np.ndarray
-    cpu: float  # s per step
+    cpu: float  # s per step and instance
     evaluations: float  # per step
     failure: str = ""
     allocations: int = -1  # in all steps of a run; -1: not counted
@@ -78,8 +79,8 @@ class Bench:
         self.programs = programs
         self.library = fmu.library
 
-    def run(self, job: Job, count_allocations: bool = False) -> Outcome:
-        """The FMU through its FMI functions."""
+    def run(self, job: Job, count_allocations: bool = False, under: Sequence[str] = ()) -> Outcome:
+        """The FMU through its FMI functions. under: the words of a program that runs the driver."""
         references = {name: variable.valueReference for name, variable in self.fmu.variables.items()}
         lines = job.lines(references)
         for name, value in job.start_values.items():
@@ -91,10 +92,15 @@ class Bench:
         resources = (self.fmu.directory / "resources").as_uri()
         preload = {"LD_PRELOAD": str(self.programs / "count_allocations.so")} if count_allocations else {}
         program = ["fmu_driver", str(self.library), self.fmu.description.guid, resources]
-        return self.call(program, lines, job, preload)
+        return self.call(program, lines, job, preload, under)
 
     def call(
-        self, program: list[str], lines: list[str], job: Job, environment: Mapping[str, str] | None = None
+        self,
+        program: list[str],
+        lines: list[str],
+        job: Job,
+        environment: Mapping[str, str] | None = None,
+        under: Sequence[str] = (),
     ) -> Outcome:
         """A program of bench/ with its arguments, and the lines of the job."""
         path = self.programs / program[0]
@@ -103,7 +109,7 @@ class Bench:
         how = {"input": "\n".join(lines), "capture_output": True, "text": True, "timeout": TIME_LIMIT}
         how["env"] = {**os.environ, **(environment or {})}
         try:
-            done = subprocess.run([path, *program[1:]], check=False, **how)
+            done = subprocess.run([*under, path, *program[1:]], check=False, **how)
         except subprocess.TimeoutExpired:
             return failed(f"not finished after {TIME_LIMIT:.0f} s")
         if done.returncode:
@@ -118,7 +124,7 @@ def _parse(text: str, job: Job) -> Outcome:
     numbers = {keyword: float(rest) for keyword, rest in words if keyword != "row"}
     rows = [rest.split() for keyword, rest in words if keyword == "row"]
     F, F_mean = np.array(rows, float).reshape(-1, 2).T
-    costs = (numbers[name] / job.count for name in ("cpu", "evaluations"))
+    costs = (numbers["cpu"] / job.count / job.instances, numbers["evaluations"] / job.count)
     counted = {name: int(value) for name, value in numbers.items() if name.startswith("allocations")}
     return Outcome(F, F_mean, *costs, **counted)
 
