@@ -10,17 +10,18 @@ wrong, FrictionError with the FMU's own message for a call that it refuses.
 
 from __future__ import annotations
 
-import atexit
+import copy
 import io
+import os
 import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import chdir
-from ctypes import c_double, c_int, c_uint
+from ctypes import c_double, c_int, c_uint, cdll
 from functools import cache
 from pathlib import Path
 from threading import Lock
-from typing import Any, NoReturn, Self
+from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import fmpy
 import numpy as np
@@ -31,12 +32,15 @@ from . import resources
 from .errors import FrictionError, UserError, shown
 from .values import Value, Variables, pairs, path_of, real
 
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
+
 MODEL = "FrictionContact"
 FMI2_WARNING = 1
 INPUTS = ("V", "d", "E", "load", "V_y")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
-_OPENING = Lock()  # FMPy changes the folder of the process where it loads a library
+_OPENING = Lock()  # one thread unzips what all threads use
 
 
 class Closing:
@@ -55,13 +59,34 @@ class Closing:
         self.close()
 
 
+class _Loaded:
+    """A library of FMPy without its constructor, which changes the folder of the process while it loads.
+
+    FMPy binds the functions by the first letters of the class's name. A copy is another instance's.
+    """
+
+    component = callbacks = fmiCallLogger = None
+    instanceName, requireFunctions = "contact", True
+
+    def __init__(self, description: ModelDescription, directory: Path, library: Path) -> None:
+        self.guid, self.unzipDirectory = description.guid, str(directory)
+        self._functions: dict[str, Any] = {}
+        self.dll = cdll.LoadLibrary(str(library))
+        self._loadFunctions()  # type: ignore[attr-defined]
+
+
+class FMU2Contact(_Loaded, fmi2.FMU2Slave):
+    """In co-simulation."""
+
+
 class FrictionFmu(Closing):
     """The unzipped FMU and its model description, from which sessions are opened.
 
     path      the .fmu file, for example `fc.FMU`, or its bytes
     raises    UserError: no such file, or not an FMU of this model
 
-    It is closed at the end of a `with` block, or by `close()`.
+    It is closed at the end of a `with` block, by `close()`, or when nothing uses it any more. Any number of
+    threads may open sessions of it.
 
         with fc.FrictionFmu(fc.FMU) as fmu, fmu.session({"vibration.V_1": 1.44}) as contact:
             contact.set("V", 0.5)
@@ -73,6 +98,7 @@ class FrictionFmu(Closing):
         self.path = Path("the file") if isinstance(path, bytes) else path_of(path, "fmu")
         self._content = path if isinstance(path, bytes) else None
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
+        self._removed = weakref.finalize(self, _remove, self._temporary, os.getpid())  # at exit at the latest
         try:
             self._unzip()
         except BaseException:
@@ -89,14 +115,18 @@ class FrictionFmu(Closing):
             self.description = read_model_description(str(self.directory), validate=False)
             failed = "its library: "
             self.library = self._library_here()
-            with chdir("."):  # FMPy stays in the folder of a library that can't be loaded
-                self._loaded = self._slave()  # keeps the shared library loaded between sessions
+            self._loaded = FMU2Contact(self.description, self.directory, self.library)
         except UserError:
             raise
         except Exception as error:  # whatever the readers make of what is none
             if isinstance(error, OSError) and not failed:
                 at = "" if error.filename == str(self.path) else f"can't be unpacked into {self._temporary}: "
                 raise UserError(f"{self.path}: {at}{error.strerror or error}") from None
+            if os.name == "posix" and os.statvfs(self._temporary).f_flag & getattr(os, "ST_NOEXEC", 0):
+                raise UserError(
+                    f"{self._temporary.parent} does not allow programs to run, and so no FMU: set TMPDIR "
+                    "in the environment to a folder that does"
+                ) from None
             reason = (str(error) or type(error).__name__).splitlines()[0]
             raise UserError(f"{self.path} is not an FMU: {failed}{reason}") from None
 
@@ -113,15 +143,6 @@ class FrictionFmu(Closing):
                 return path
         has = ", ".join(sorted(path.name for path in self.directory.glob("binaries/*")))
         raise UserError(f"{self.path}: has no binary for this platform, {fmpy.platform}, only {has}")
-
-    def _slave(self) -> fmi2.FMU2Slave:
-        return fmi2.FMU2Slave(
-            guid=self.description.guid,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            unzipDirectory=str(self.directory),
-            libraryPath=str(self.library),
-            instanceName="contact",
-        )
 
     def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | bytes | None]]:
         """Of a copy: the package's own FMU, or the file, opened there."""
@@ -143,11 +164,17 @@ class FrictionFmu(Closing):
         """
         if not self.directory.exists():
             raise UserError(f"{self.path}: this FrictionFmu is closed; open another one")
-        return Session(self, self._slave(), start_values or {}, real(start, "start"), tolerance)
+        return Session(self, copy.copy(self._loaded), start_values or {}, real(start, "start"), tolerance)
 
     def close(self) -> None:
         """Removes the unzipped files."""
-        shutil.rmtree(self._temporary, ignore_errors=True)
+        self._removed()
+
+
+def _remove(folder: Path, process: int) -> None:
+    """Of the process that made it: a fork leaves it alone."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2.fmi2CallbackFunctions:
@@ -367,6 +394,4 @@ def opened(file: str | Path | bytes | None) -> FrictionFmu:
 
 @cache
 def _opened(file: Path | bytes, version: tuple[int, ...]) -> FrictionFmu:
-    fmu = FrictionFmu(file)
-    atexit.register(fmu.close)
-    return fmu
+    return FrictionFmu(file)
