@@ -120,9 +120,8 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
         return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "startTime = %s is not a finite number",
                          fc_quantity_text(startTime, "s").text);
     }
-    if (stopTimeDefined && !isfinite(stopTime)) {
-        return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "stopTime = %s is not a finite number",
-                         fc_quantity_text(stopTime, "s").text);
+    if (stopTimeDefined && isnan(stopTime)) {
+        return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "stopTime = nan is not a number");
     }
     if (stopTimeDefined && stopTime < startTime) {
         return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "stopTime = %s is before startTime = %s",
@@ -130,8 +129,8 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
     }
     FcExperiment* experiment = &instance->experiment;
     experiment->start_time = startTime;
-    experiment->has_stop_time = stopTimeDefined ? 1 : 0;
-    experiment->stop_time = stopTimeDefined ? stopTime : 0.0;
+    experiment->has_stop_time = stopTimeDefined && stopTime < INFINITY; // infinity: the run has no end
+    experiment->stop_time = experiment->has_stop_time ? stopTime : 0.0;
     if (experiment->tolerance_is_set) {
         return fmi2OK;
     }

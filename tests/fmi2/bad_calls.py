@@ -107,6 +107,12 @@ CALLS = [
         ("stopTime = 1", "startTime = 2"),
     ),
     BadCall(
+        "stop time that is no number",
+        "instantiated",
+        lambda i: i.call("fmi2SetupExperiment", 0, 0.0, 2.0, 1, float("nan")),
+        ("stopTime", "nan"),
+    ),
+    BadCall(
         "input derivative of order 2",
         BETWEEN_STEPS,
         lambda i: i.set_input_rates({"V": 1.0}, order=2),

@@ -54,6 +54,12 @@ def test_a_step_with_a_finite_end_is_taken_however_long_it_is(
     assert instance.get("W_f") == [pytest.approx(1e-3 * 0.005 * h, rel=1e-12)]
 
 
+def test_a_run_without_end_may_say_so(instance: Instance) -> None:
+    """FMPy and others set an infinite stop time."""
+    instance.initialize(stop=float("inf"))
+    assert instance.step(0.0, 1e9) == OK, instance.messages
+
+
 def test_a_coarse_step_over_the_vibration_is_told_once(new_instance: Callable[..., Instance]) -> None:
     instance = new_instance().start(values={"vibration.V_1": 1.44})
     half_period = 0.5 / 20e3
