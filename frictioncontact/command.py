@@ -103,6 +103,9 @@ def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespac
         sys.stdout.flush()
     except UserError as error:
         sys.exit(f"error: {error}")
+    except BrokenPipeError:  # who reads has seen enough, as `| head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.exit(1)
     except OSError as error:
         where = error.filename or ("standard output" if _stdout_fails() else getattr(options, "output", None))
         sys.exit(f"error: {f'{where}: ' if where else ''}{reason(error)}")

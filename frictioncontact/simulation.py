@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from frictioncontact.values import Variables
 
 FAR = 1e300  # s, before and after every sample
+ROUNDING = 1e-6  # of times that a table holds in single precision
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ def samples(
     if len(backward):
         k = int(backward[0])
         raise UserError(f"{where}: time falls from {time[k]:g} to {time[k + 1]:g} s at sample {k + 1}")
-    beyond = 0 if stop is None else int(np.sum(time > stop * (1.0 + 1e-9)))
+    beyond = 0 if stop is None else int(np.sum(time > stop * (1.0 + ROUNDING)))
     if beyond:
         late = f"{beyond} of {len(time)} samples are after stop = {stop:g} s"
         warn([f"{where}: {late}; the last is at {time[-1]:g} s"])
