@@ -194,14 +194,13 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     }
     const FcScene scene = fc_friction_contact_scene(&held);
     const double force = fc_scene_mean_limit(&scene, 0.0);
-    double range = first_range(&held, &scene, variable);
+    // 0: an input that counts for nothing, or no contact.
+    double range = fc_scene_is_loose(&scene) ? 0.0 : first_range(&held, &scene, variable);
     const double usual = range != 0.0 ? force / fabs(range) : 0.0;
     double least = INFINITY;
-    const bool is_flat =
-        range == 0.0 || fc_scene_is_loose(&scene); // an input that counts for nothing, or no contact
-    *slope = is_flat ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};
+    *slope = range == 0.0 ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};
     double evaluations = 0.0;
-    for (int tried = 0; tried < MOST_RANGES && !is_flat; tried++) {
+    for (int tried = 0; tried < MOST_RANGES && range != 0.0; tried++) {
         FcVector found;
         double error;
         double missed;

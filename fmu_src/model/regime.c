@@ -260,7 +260,8 @@ static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, 
     if (model == FC_COULOMB) {
         FcVector turning = {0.0, 0.0};
         if (V_along.x != 0.0 || V_along.y != 0.0) { // at rest the force jumps: not a number
-            turning = times(at->limit / at->speed, perpendicular(V_along, direction_of_V));
+            turning =
+                times(at->speed > 0.0 ? at->limit / at->speed : NAN, perpendicular(V_along, direction_of_V));
         }
         return (Parts){.V = V_along, .force = fc_plus(turning, at->limit * log_limit, direction_of_V)};
     }
