@@ -1,6 +1,6 @@
 // Time derivatives in co-simulation: of inputs, given, and of F_t and F_y. Directional derivatives of outputs
-// and rates: by inputs, tunable parameters and time from initialization mode on, in model exchange by the states
-// too. All are formulas except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of
+// and rates: by inputs, tunable parameters and time from initialization mode on, and then by the states too. All
+// are formulas except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of
 // a bound for a slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f), and the
 // deflection after a jump. These are differences.
 #include <math.h>
@@ -104,7 +104,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-// Whether there are derivatives by the variable in both interfaces: an input, a tunable parameter or time.
+// Whether there are derivatives by the variable in every mode: an input, a tunable parameter or time.
 static bool is_known(const FcVariableInfo* info) {
     return info->causality == FC_CAUSALITY_INPUT || info->causality == FC_CAUSALITY_INDEPENDENT ||
            (info->causality == FC_CAUSALITY_PARAMETER && info->variability == FC_VARIABILITY_TUNABLE);
@@ -244,10 +244,18 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
     FcDirection direction = direction_of(contact, along);
     const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
     const bool has_jumped = reached.delta != bristle.delta || reached.delta_y != bristle.delta_y;
+    const bool is_led = has_jumped || (regime != FC_FREE && !hybrid); // by its bound, as inputs move that
+    if (is_led) { // the present deflection counts by its direction alone
+        const double shrinks = fc_size(reached) / fc_size(bristle);
+        const FcVector n = fc_direction(fc_delta(bristle), (FcVector){1.0, 0.0});
+        const double turns = shrinks * fc_across(n, (FcVector){along->delta, along->delta_y});
+        direction.delta = -turns * n.y;
+        direction.delta_y = turns * n.x;
+    }
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
         const double change = is_known(info) ? fc_variable_value(along, info) : 0.0;
-        if (change != 0.0 && has_jumped && !fc_scene_is_loose(&scene)) {
+        if (change != 0.0 && is_led && !fc_scene_is_loose(&scene)) {
             const FcVector moves = reached_by(contact, info);
             direction.delta += change * moves.x;
             direction.delta_y += change * moves.y;
@@ -302,12 +310,12 @@ static const FcVariableInfo* expect_known(const FcInstance* instance, fmi2ValueR
         return expect(instance, call, vr, FC_CAUSALITY_INPUT); // none
     }
     const FcVariableInfo* info = &fc_variables[vr];
-    if (!is_known(info) && !(fc_instance_is_hybrid(instance) && fc_variable_is_state(info))) {
-        fc_refuse(
-            instance, call,
-            "%s (value reference %u) is not an input, a tunable parameter, time or, in model exchange, a "
-            "state",
-            info->name, vr);
+    const bool is_started = instance->experiment.mode != FC_INITIALIZATION_MODE;
+    if (!is_known(info) && !(is_started && fc_variable_is_state(info))) {
+        fc_refuse(instance, call,
+                  "%s (value reference %u) is not an input, a tunable parameter, time or, after "
+                  "initialization, a state",
+                  info->name, vr);
         return NULL;
     }
     if (info->offset == offsetof(FcVariables, friction.staticRatio) &&
@@ -354,7 +362,7 @@ static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unk
         if (is_settled && (is_mean || is_force || is_state || fc_variable_is_rate(unknown))) {
             reason = "in initialization mode with initialState = Settled; afterwards it has";
         }
-    } else if (!fc_instance_is_hybrid(instance) && known->causality != FC_CAUSALITY_INPUT &&
+    } else if (!fc_instance_is_hybrid(instance) && known->causality == FC_CAUSALITY_PARAMETER &&
                (is_mean || is_state)) {
         reason = "in co-simulation, since the last step left it; F_t_settled and F_y_settled have";
     }
