@@ -153,7 +153,8 @@ static double free_periods_by_steps(Walk* walk, double left) {
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
     FcPlane plane;
     fc_plane_make(&plane, walk->scene);
-    if (map.relaxation == 0.0 ? moved == 0.0 : moved <= ROUNDING_OF_EDGE * fc_bound(&plane, 0, 0.0).D) {
+    const double rounding = ROUNDING_OF_EDGE * fc_bound(&plane, 0, 0.0).D;
+    if (map.relaxation == 0.0 ? moved == 0.0 : moved <= rounding) {
         return map.relaxation > 0.0 && meets_after(walk, 0.0) ? 0.0 : left;
     }
     if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {
@@ -176,7 +177,7 @@ static double free_periods_by_steps(Walk* walk, double left) {
             free = middle;
         }
     }
-    return fc_least(free, left);
+    return free * moved <= rounding ? 0.0 : fc_least(free, left); // it is at the edge
 }
 
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /

@@ -65,6 +65,16 @@ def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) ->
             assert session.slope("F_t_settled", "V") == pytest.approx(sigma / f / 2, rel=1e-3)
 
 
+@pytest.mark.parametrize("V", [0.005, 1e-12, 1e-15, 1e-17])
+@pytest.mark.parametrize("d", [65e-6, 100e-6, 200e-6])
+def test_a_nearly_open_contact_in_the_plane(fmu: FrictionFmu, d: float, V: float) -> None:
+    """V carries the bristle to its bound, 1e13 m to 1e74 m away, beside which the swing across is rounding."""
+    values: dict[str, Value] = {"friction.model": "ElasticPlastic", "vibration.V_2": 0.1, "d": d, "V": V}
+    with fmu.session(values) as session:
+        assert session.get("F_t_settled") == pytest.approx(F_C, rel=2e-13)
+        assert session.get("F_y_settled") == pytest.approx(0.0, abs=2e-13 * F_C)
+
+
 def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
     """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
     values: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 321.0}
