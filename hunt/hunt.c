@@ -2,37 +2,32 @@
 // reference (trial.h has the rule), and prints each step that is not within the tolerance.
 //
 //     cmake --preset default && cmake --build --preset default --target hunt
-//     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
+//     build/hunt/hunt --seed 1 --scenes 20000
+//     build/hunt/hunt --climb 60 --seed 1 --where "tolerance=1e-6 law=LuGre limit=Load"
 //     build/hunt/hunt --replay "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2"
 //
 // Each miss is one line, with the sequence as --replay reads it. The last line has the sums. Ends with 1 if a step missed.
 #include <getopt.h>
 #include <math.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
+#include "climb.h"
 #include "scenes.h"
 #include "trial.h"
 
-enum { MOST_JOBS = 64 };
-
 typedef struct {
-    double seed, scenes, minutes, jobs;
+    double seed, scenes, minutes;
     double minimize; // misses that are made plain, at most
+    double climb;    // s
     Kind kind;
-    const char *replay, *file;
+    const char *where, *replay, *file;
 } Options;
 
-// A hunt, by several threads.
 typedef struct {
     Options options;
-    time_t begin;
-    atomic_ullong next; // the number of the sequence to be drawn next, from 0 on
-    pthread_mutex_t lock;
     long sequences, steps, misses, refused, unknown;
     double worst; // error over the allowed error
     double work;  // the sum of ln(1 + evaluations) over the sequences
@@ -41,7 +36,7 @@ typedef struct {
 // Whether a step of the sequence misses by 1.5 allowed errors or more, in any result.
 static bool still_misses(const Sequence* sequence) {
     Trial trial;
-    trial_run(&trial, sequence);
+    trial_run(&trial, sequence, true);
     return trial.worst > 1.5;
 }
 
@@ -72,62 +67,69 @@ static void print_step(const TrialStep* taken, int step) {
     }
 }
 
-static void try_sequence(Hunt* hunt, Sequence sequence) {
-    Trial trial;
-    trial_run(&trial, &sequence);
-    pthread_mutex_lock(&hunt->lock);
+static void take_sequence(Hunt* hunt, const Sequence* sequence, bool settled, Trial* trial) {
+    trial_run(trial, sequence, settled);
     hunt->sequences++;
-    hunt->steps += trial.steps;
-    hunt->unknown += trial.unknown;
-    hunt->refused += trial.refused;
-    hunt->worst = fmax(hunt->worst, trial.worst);
-    hunt->work += log1p(trial.evaluations);
-    if (trial.refused) {
+    hunt->steps += trial->steps;
+    hunt->unknown += trial->unknown;
+    hunt->refused += trial->refused;
+    hunt->worst = fmax(hunt->worst, trial->worst);
+    hunt->work += log1p(trial->evaluations);
+    if (trial->refused) {
         char text[SEQUENCE_TEXT];
-        sequence_text(&sequence, text, sizeof text);
-        printf("refused step=%d: %s; %s\n", trial.steps + 1, trial.message.text, text);
+        sequence_text(sequence, text, sizeof text);
+        printf("refused step=%d: %s; %s\n", trial->steps + 1, trial->message.text, text);
     }
+}
+
+static void try_sequence(Hunt* hunt, const Sequence* sequence) {
+    Trial trial;
+    take_sequence(hunt, sequence, true, &trial);
     for (int k = 0; k < trial.steps; k++) {
         if (!(trial.taken[k].verdict.ratio <= 1.0)) {
             hunt->misses++;
-            print_miss(hunt, &sequence, &trial.taken[k], k);
+            print_miss(hunt, sequence, &trial.taken[k], k);
         }
         if (hunt->options.replay) {
             print_step(&trial.taken[k], k);
         }
     }
-    pthread_mutex_unlock(&hunt->lock);
 }
 
-static void* run_job(void* of) {
-    Hunt* hunt = of;
+static void try_draws(Hunt* hunt) {
     const Options* o = &hunt->options;
-    while (difftime(time(NULL), hunt->begin) < 60.0 * o->minutes) {
-        const uint64_t number = hunt->next++;
-        if ((double)number >= o->scenes) {
-            break;
-        }
-        try_sequence(hunt, sequence_drawn((uint64_t)o->seed, number, o->kind));
+    const time_t begin = time(NULL);
+    for (uint64_t number = 0; (double)number < o->scenes && difftime(time(NULL), begin) < 60.0 * o->minutes;
+         number++) {
+        const Sequence sequence = sequence_drawn((uint64_t)o->seed, number, o->kind);
+        try_sequence(hunt, &sequence);
     }
-    return NULL;
 }
 
-static void fail(const char* what) {
-    perror(what);
-    exit(2);
+// Most of the time of a trial goes into F_t_settled: a settled start tells its error, too.
+static double ratio_of(void* hunt, const Sequence* sequence) {
+    Trial trial;
+    take_sequence(hunt, sequence, sequence->step[0].initial == START_SETTLED, &trial);
+    return trial.steps > trial.unknown ? trial.worst : -1.0;
 }
 
-static void run_all(Hunt* hunt) {
-    pthread_t jobs[MOST_JOBS];
-    for (int k = 0; k < hunt->options.jobs; k++) {
-        if (pthread_create(&jobs[k], NULL, run_job, hunt) != 0) {
-            fail("hunt: a job");
+// Prints the misses of a climb, and its worst sequence.
+static void try_climb(Hunt* hunt) {
+    const Options* o = &hunt->options;
+    Climb of = {.seed = (uint64_t)o->seed, .kind = o->kind, .where = o->where};
+    of.seconds = o->climb;
+    of.trials = o->scenes;
+    climb(&of, ratio_of, hunt);
+    int worst = 0;
+    for (int k = 0; k < KEPT; k++) {
+        worst = of.ratio[k] > of.ratio[worst] ? k : worst;
+        if (of.ratio[k] > 1.0) {
+            try_sequence(hunt, &of.kept[k]);
         }
     }
-    for (int k = 0; k < hunt->options.jobs; k++) {
-        pthread_join(jobs[k], NULL);
-    }
-    printf("\nseed %.0f", hunt->options.seed);
+    char text[SEQUENCE_TEXT];
+    sequence_text(&of.kept[worst], text, sizeof text);
+    printf("worst ratio=%.3g: %s\n", of.ratio[worst], text);
 }
 
 // Each line is a sequence; # begins a comment.
@@ -135,11 +137,13 @@ static void replay_file(Hunt* hunt) {
     FILE* file = fopen(hunt->options.file, "r");
     char line[SEQUENCE_TEXT];
     if (file == NULL) {
-        fail(hunt->options.file);
+        perror(hunt->options.file);
+        exit(2);
     }
     while (fgets(line, sizeof line, file) != NULL) {
         if (line[0] != '#' && line[0] != '\n') {
-            try_sequence(hunt, sequence_read(line));
+            const Sequence sequence = sequence_read(line);
+            try_sequence(hunt, &sequence);
         }
     }
     fclose(file);
@@ -147,68 +151,53 @@ static void replay_file(Hunt* hunt) {
 
 static void usage(void) {
     fprintf(stderr,
-            "hunt [--seed S] [--scenes N] [--minutes M] [--jobs J] [--minimize K] [--plane] [--near-line]\n"
-            "     [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
-            "--minimize: makes K misses plain.\n"
-            "--plane: scenes that slide, or vibrate, across. --near-line: short steps that slide 1e-9 m/s "
-            "across.\n"
+            "hunt [--seed S] [--scenes N] [--minutes M] [--plane] [--minimize K]\n"
+            "     [--climb SECONDS] [--where \"NAME=VALUE ..\"] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
+            "--plane: scenes that slide, or vibrate, across. --minimize: makes K misses plain.\n"
+            "--climb: keeps the worst scenes and changes these, N at the most. --where: which all have.\n"
             "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
             "line.\n");
     exit(2);
 }
 
-static double number_of(const char* text) {
-    char* end;
-    const double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(value >= 0.0)) {
-        usage();
-    }
-    return value;
-}
-
 static Options read_options(int argc, char** argv) {
-    enum { SEED, SCENES, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY };
-    Options o = {.seed = 1.0, .minutes = INFINITY, .jobs = 1.0};
+    enum { SEED, SCENES, MINUTES, MINIMIZE, CLIMB, FILE_NAME, WHERE, REPLAY };
+    Options o = {.seed = 1.0, .minutes = INFINITY, .where = ""};
     int kind = ALONG;
-    const struct option names[] = {{"seed", 1, NULL, SEED},         {"scenes", 1, NULL, SCENES},
-                                   {"minutes", 1, NULL, MINUTES},   {"jobs", 1, NULL, JOBS},
-                                   {"minimize", 1, NULL, MINIMIZE}, {"plane", 0, &kind, PLANE},
-                                   {"file", 1, NULL, FILE_NAME},    {"near-line", 0, &kind, NEAR_LINE},
-                                   {"replay", 1, NULL, REPLAY},     {0}};
-    double* const numbers[] = {&o.seed, &o.scenes, &o.minutes, &o.jobs, &o.minimize};
+    char rest;
+    const struct option names[] = {{"seed", 1, NULL, SEED},       {"scenes", 1, NULL, SCENES},
+                                   {"minutes", 1, NULL, MINUTES}, {"minimize", 1, NULL, MINIMIZE},
+                                   {"climb", 1, NULL, CLIMB},     {"plane", 0, &kind, PLANE},
+                                   {"file", 1, NULL, FILE_NAME},  {"where", 1, NULL, WHERE},
+                                   {"replay", 1, NULL, REPLAY},   {0}};
+    double* const numbers[] = {&o.seed, &o.scenes, &o.minutes, &o.minimize, &o.climb};
+    const char** const words[] = {&o.file, &o.where, &o.replay};
     for (int name, index; (name = getopt_long(argc, argv, "", names, &index)) != -1;) {
-        if (name == FILE_NAME) {
-            o.file = optarg;
-        } else if (name == REPLAY) {
-            o.replay = optarg;
-        } else if (name > REPLAY) { // it is not known
+        if (name > REPLAY) { // it is not known
             usage();
-        } else if (optarg) {
-            *numbers[name] = number_of(optarg);
+        } else if (name >= FILE_NAME) {
+            *words[name - FILE_NAME] = optarg;
+        } else if (optarg && sscanf(optarg, "%lf%c", numbers[name], &rest) != 1) {
+            usage();
         }
     }
     if (optind < argc) {
         usage();
     }
     o.kind = (Kind)kind;
-    o.scenes = o.scenes > 0.0 ? o.scenes : isinf(o.minutes) ? 1000.0 : INFINITY;
-    o.jobs = fmin(MOST_JOBS, fmax(1.0, o.jobs));
+    o.scenes = o.scenes > 0.0 ? o.scenes : isinf(o.minutes) && o.climb == 0.0 ? 1000.0 : INFINITY;
     return o;
 }
 
 int main(int argc, char** argv) {
-    static Hunt hunt = {.lock = PTHREAD_MUTEX_INITIALIZER};
+    static Hunt hunt;
     hunt.options = read_options(argc, argv);
-    hunt.begin = time(NULL);
     if (hunt.options.replay) {
-        try_sequence(&hunt, sequence_read(hunt.options.replay));
+        const Sequence sequence = sequence_read(hunt.options.replay);
+        try_sequence(&hunt, &sequence);
         return 0;
     }
-    if (hunt.options.file) {
-        replay_file(&hunt);
-    } else {
-        run_all(&hunt);
-    }
+    (hunt.options.file ? replay_file : hunt.options.climb > 0.0 ? try_climb : try_draws)(&hunt);
     printf(
         "\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses, worst error %.2g, "
         "%.5g evaluations a sequence\n",

@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     }
     static Trial trial;
     const Sequence sequence = sequence_read(argv[1]);
-    trial_run(&trial, &sequence);
+    trial_run(&trial, &sequence, false);
     if (trial.refused) {
         printf("refused: %s\n", trial.message.text);
     }

@@ -182,8 +182,6 @@ static ReferenceScene contact_drawn(bool plane) {
 
 // ---- Steps at random ----
 
-static double rate_of_E(const ReferenceScene* s) { return s->E * (random_log(0.11, 9.0) - 1.0) / s->h; }
-
 static void rates(ReferenceScene* s) {
     const double top = top_speed(s);
     if (random_chance(0.6)) {
@@ -201,7 +199,7 @@ static void rates(ReferenceScene* s) {
         s->d_rate = (to - room) / s->h;
     }
     if (random_chance(0.3)) {
-        s->E_rate = rate_of_E(s);
+        s->E_rate = s->E * (random_log(0.11, 9.0) - 1.0) / s->h;
     }
     if (random_chance(0.6)) {
         const double share = random_chance(0.5)   ? between(0.5, 2.0)
@@ -211,42 +209,28 @@ static void rates(ReferenceScene* s) {
     }
 }
 
-static void scale(double* value, double most) {
-    if (random_chance(0.2)) {
-        *value *= random_log(1.0 / most, most);
+// Inputs and tunable parameters that jump, as where a tool lifts off and is set down, or a vibration is switched; the length of
+// the step and its rates. full: the first step.
+static void step_at_random(ReferenceScene* s, const ReferenceScene* full) {
+    double* const scaled[] = {&s->V_1, &s->V_2, &s->f,   &s->E,       &s->load,
+                              &s->F_C, &s->mu,  &s->V_S, stiffness(s)};
+    for (int k = 0; k < 9; k++) {
+        *scaled[k] *= random_chance(0.2) ? random_log(1.0 / 3.0, 3.0) : 1.0;
     }
-}
-
-static void change_parameters(ReferenceScene* s) {
-    scale(&s->F_C, 3.0);
-    scale(&s->mu, 3.0);
-    scale(&s->V_S, 3.0);
-    scale(stiffness(s), 3.0);
-    s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
-    if (random_chance(0.2)) {
-        s->staticRatio = static_ratio(0.2);
+    const double on = random_chance(0.2) ? random_below(2) : -1.0; // or as it is
+    if (on >= 0.0) {
+        s->V_1 = on * full->V_1;
+        s->V_2 = on * full->V_2;
+        s->a_d = on * full->a_d;
+        s->load = random_chance(0.5) ? on * full->load : s->load;
+        s->d = random_chance(0.5) ? full->d + (1.0 - on) * between(30.0, 600.0) * s->R_q / s->lambda : s->d;
     }
-}
-
-// Inputs that jump, tunable parameters, the length of the step and its rates.
-static void step_at_random(ReferenceScene* s) {
-    scale(&s->V_1, 3.0);
-    scale(&s->V_2, 3.0);
+    s->d = fmax(s->d * (random_chance(0.2) ? random_log(0.9, 1.1) : 1.0), 1.1 * s->a_d);
     if (random_chance(0.3)) {
         velocity(s, &s->V, &s->V_y);
     }
-    scale(&s->d, 1.1);
-    s->d = fmax(s->d, 1.1 * s->a_d);
-    scale(&s->E, 3.0);
-    if (random_chance(0.1)) {
-        s->load = random_chance(0.5) ? 0.0 : random_log(0.1, 1e3);
-    }
-    scale(&s->load, 2.0);
-    scale(&s->f, 2.0);
-    change_parameters(s);
-    if (random_chance(0.1)) {
-        s->phase_d = between(-TURN, TURN);
-    }
+    s->staticRatio = random_chance(0.2) ? static_ratio(0.2) : s->staticRatio;
+    s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
     const bool linear = random_chance(0.4);
     s->h = length(s, s->V_2 != 0.0 ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS);
     if (linear) {
@@ -254,113 +238,51 @@ static void step_at_random(ReferenceScene* s) {
     }
 }
 
-// ---- Steps of signals as users have them ----
-
-// Shares of the drawn load, velocity and amplitudes at the ends of steps; all 1 if there are none. A load of 0 is an open
-// contact.
-typedef struct {
-    const double *load, *V, *vibration;
-} Signal;
-
-// clang-format off
-#define SHARES(...) (const double[MOST_STEPS]){__VA_ARGS__}
-static const Signal SIGNALS[] = {
-    // a tool approaches, presses, slides, lifts off, and is set down again
-    {.load = SHARES(0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1), .V = SHARES(0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0)},
-    // a bounce
-    {.load = SHARES(0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0)},
-    // a mass on a belt sticks and slips
-    {.V = SHARES(0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0)},
-    // a sweep of V, and of the load
-    {.V = SHARES(-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1)},
-    {.load = SHARES(0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01)},
-    // the vibration is switched on and off; a contact that is held; stop and go
-    {.vibration = SHARES(0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0)},
-    {.load = SHARES(1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1), .V = SHARES(0), .vibration = SHARES(1, 1, 1, 1, 1, 1, 0, 0, 1, 1)},
-    {.V = SHARES(1, 1, 0, 0, 0, 1, 0, -1, 0, 1)},
-};
-// clang-format on
-
-static double share(const double* of, int k) { return of ? of[k] : 1.0; }
-
-// Step k of the signal: from its value k - 1 to its value k, or held at that.
-static void step_of_signal(const Signal* signal, int k, const ReferenceScene* full, bool linear,
-                           ReferenceScene* s) {
-    const double pressed = share(signal->load, k);
-    const double load = pressed > 0.0 ? full->load * pressed : random_chance(0.3) ? -0.1 * full->load : 0.0;
-    // The separation that gives the load, or one that opens the contact.
-    const double lengths = pressed > 0.0 ? log(pressed) : -between(30.0, 600.0);
-    const double d = fmax(full->d - full->R_q / full->lambda * lengths, 1.1 * full->a_d);
-    const bool moves = linear && k > 0;
-    const double from = share(signal->V, moves ? k - 1 : k); // as the user samples it
-    const double vibration = share(signal->vibration, k);
-    s->V_1 = full->V_1 * vibration;
-    s->V_2 = full->V_2 * vibration;
-    s->a_d = full->a_d * vibration;
-    s->V = full->V * from;
-    s->V_y = full->V_y * from;
-    if (moves) {
-        s->V_rate = (full->V * share(signal->V, k) - s->V) / s->h;
-        s->V_y_rate = (full->V_y * share(signal->V, k) - s->V_y) / s->h;
-        s->d_rate = (d - s->d) / s->h;
-        s->load_rate = (load - s->load) / s->h;
-        s->E_rate = random_chance(0.1) ? rate_of_E(s) : 0.0;
-    } else {
-        s->d = d;
-        s->load = load;
-    }
-}
-
 // ---- Sequences ----
 
-static bool is_in_domain(const ReferenceScene* s) {
+bool scene_is_in_domain(const ReferenceScene* s) {
     const ReferenceScene end = scene_after(s);
-    const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
-    return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
-           !(vibrates(s) && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
+    const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E, periods = s->h * s->f;
+    const double top = fmax(top_speed(s), top_speed(&end)), damping = 1.001 * reference_rest(s).limit / top;
+    const double kappa = scene_kappa(s), kappa_end = scene_kappa(&end);
+    const bool swings = vibrates(s) && s->law != LAW_COULOMB, drops = s->staticRatio > 1.0;
+    return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 && s->nu >= 0.0 && s->nu < 0.5 &&
+           !(swings && (fmin(kappa, kappa_end) < LEAST_KAPPA || fmax(kappa, kappa_end) > MOST_KAPPA)) &&
+           s->h >= SHORTEST && periods >= 1e-6 && periods <= MOST_PERIODS && s->staticRatio >= 1.0 &&
+           s->staticRatio <= 3.0 && !(drops && (s->V_S < 1e-3 * top || s->V_S > 10.0 * top)) &&
+           s->sigma_1 <= damping && s->sigma_2 <= damping && scene_start_over_limit(s) <= LARGEST_START &&
            (s->input == INPUT_SEPARATION ||
             fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
 
 Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
-    const bool plane = kind == PLANE;
     random_state = seed * 0xd1342543de82ef95u + number;
     random_bits();
     random_state ^= random_bits();
     Sequence sequence = {.tolerance = TOLERANCES[number % 5], .method = 1};
-    ReferenceScene full = contact_drawn(plane);
-    const bool leaps = plane && number % 4 == 3; // inputs move over many periods
-    const bool of_user = random_chance(0.5) && !leaps, linear = random_chance(0.5) || leaps;
-    const bool tunes = random_chance(0.25);
-    const Signal* signal = &SIGNALS[random_below(sizeof SIGNALS / sizeof *SIGNALS)];
-    const int wanted = of_user ? MOST_STEPS : 1 + random_below(4);
-    const double most = plane     ? MOST_PLANAR
-                        : !linear ? MOST_PERIODS
-                        : of_user ? MOST_MOVING / MOST_STEPS
-                                  : MOST_MOVING;
-    full.h = leaps ? random_log(12.0, MOST_LEAP) / full.f : length(&full, most);
-    for (int k = 0; k < wanted; k++) {
+    const bool plane = kind == PLANE, leaps = plane && number % 4 == 3; // inputs move over many periods
+    const bool near_line = plane && number % 8 == 1; // a line, but for a V_y that is nearly none
+    ReferenceScene full = contact_drawn(plane && !near_line);
+    const bool linear = random_chance(0.5) || leaps;
+    full.h = leaps ? random_log(12.0, MOST_LEAP) / full.f
+                   : length(&full, plane    ? MOST_PLANAR
+                                   : linear ? MOST_MOVING
+                                            : MOST_PERIODS);
+    if (near_line) {
+        full.V_y = NEARLY_NONE;
+        full.h = vibrates(&full) ? fmin(full.h, MOST_NEAR_LINE / full.f) : full.h;
+    }
+    for (int k = 0, wanted = near_line ? 1 : 1 + random_below(4); k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
-        if (of_user) {
-            step_of_signal(signal, k, &full, linear, &s);
-            if (tunes && k > 0) {
-                change_parameters(&s);
-            }
-        } else if (k > 0) {
-            step_at_random(&s);
+        if (k > 0) {
+            step_at_random(&s, &full);
         } else if (linear) {
             rates(&s);
         }
-        if (!is_in_domain(&s)) {
+        if (!scene_is_in_domain(&s)) {
             break;
         }
         sequence.step[sequence.steps++] = s;
-    }
-    ReferenceScene* first = &sequence.step[0];
-    if (kind == NEAR_LINE) {
-        sequence.steps = sequence.steps > 0 && (first->V != 0.0 || first->V_rate != 0.0 || first->V_1 != 0.0);
-        first->V_y = NEARLY_NONE;
-        first->h = vibrates(first) ? fmin(first->h, MOST_NEAR_LINE / first->f) : first->h;
     }
     return sequence;
 }

@@ -1,4 +1,4 @@
-// Sequences drawn at random, in the domain of docs/numerics.md; half of them from signals as users have them.
+// Sequences drawn at random, in the domain of docs/numerics.md.
 #ifndef HUNT_SCENES_H
 #define HUNT_SCENES_H
 
@@ -6,12 +6,13 @@
 
 #include "sequence.h"
 
-// PLANE: with a transverse vibration. NEAR_LINE: the first step of a sequence that moves along a line, a few periods at the
-// most, with a V_y that is nearly none.
-typedef enum { ALONG, PLANE, NEAR_LINE } Kind;
+// PLANE: with a transverse vibration, or a few periods along a line with a V_y that is nearly none.
+typedef enum { ALONG, PLANE } Kind;
 
 // A sequence, which depends only on its kind, the seed and the number.
 Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind);
+
+bool scene_is_in_domain(const ReferenceScene* scene);
 
 // sigma V / (2 pi f limit) at the scene's start, without its vibration.
 double scene_kappa(const ReferenceScene* scene);

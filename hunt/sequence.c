@@ -135,6 +135,11 @@ Sequence sequence_read(const char* text) {
     return sequence;
 }
 
+void with_word(char* changed, const char* text, size_t begin, const char* word) {
+    snprintf(changed, SEQUENCE_TEXT, "%.*s%s%s", (int)begin, text, word,
+             text + begin + strcspn(text + begin, " ") + 1);
+}
+
 // Makes the word that begins there plain; returns whether it could.
 static bool make_word_plain(char* text, size_t begin, StillShows* shows) {
     static const int DIGITS[] = {0, 1, 2, 3, 5, 8, 12}; // 0: without the word
@@ -147,7 +152,7 @@ static bool make_word_plain(char* text, size_t begin, StillShows* shows) {
         if (k > 0) {
             snprintf(word, sizeof word, "%.*s%.*g ", name, text + begin, DIGITS[k], value);
         }
-        snprintf(plainer, sizeof plainer, "%.*s%s%s", (int)begin, text, word, text + begin + length);
+        with_word(plainer, text, begin, word);
         const Sequence sequence = sequence_read(plainer);
         if (strlen(word) < length && shows(&sequence)) {
             strcpy(text, plainer);

@@ -33,6 +33,9 @@ ReferenceScene scene_after(const ReferenceScene* before);
 // changes alone.
 void sequence_text(const Sequence* sequence, char* text, size_t size);
 
+// The text with another word, and its space, or with none, in place of the word that begins there.
+void with_word(char* changed, const char* text, size_t begin, const char* word);
+
 // Makes the text of a sequence plain as long as it still shows the miss: without each word, else with the fewest digits,
 // until nothing changes.
 typedef bool StillShows(const Sequence* sequence);

@@ -12,7 +12,8 @@ const char* const GRADE_NAMES[GRADES] = {"F_t", "F_y", "F_t_mean", "F_y_mean", "
 
 static const double ROUNDING = 1e-11; // of S, beside the tolerance
 static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
-static const double LEAST_S = 1e-20;  // N, and J: S and the path are 0 if nothing acts
+static const double SHARP = 0.1; // of the allowed error: by this the reference may differ from its finer self
+static const double LEAST_S = 1e-20; // N, and J: S and the path are 0 if nothing acts
 
 // ---- The FMU ----
 
@@ -101,8 +102,8 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
 
 // The step from the FMU's state before it. A settled start is judged by its own force.
 static void step_of_reference(const ReferenceScene* before, const ReferenceScene* scene, const FmuStep* step,
-                              ReferenceStep* truth) {
-    reference_step(before, scene, 1, truth);
+                              int fineness, ReferenceStep* truth) {
+    reference_step(before, scene, fineness, truth);
     if (scene->initial == START_SETTLED && scene->law != LAW_COULOMB) {
         const ReferenceStep settled = *truth;
         ReferenceScene from = *scene;
@@ -110,7 +111,7 @@ static void step_of_reference(const ReferenceScene* before, const ReferenceScene
         from.delta_0 = step->delta_start;
         from.delta_y_0 = step->delta_y_start;
         from.slips = step->slips_start;
-        reference_step(NULL, &from, 1, truth);
+        reference_step(NULL, &from, fineness, truth);
         truth->result[F_T_START] = settled.result[F_T_START];
         truth->result[F_Y_START] = settled.result[F_Y_START];
         truth->known = truth->known && settled.known;
@@ -138,7 +139,7 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
         past.start = moved.start;
         ReferenceStep found = taken->truth;
         if (moved.h > 0.0) {
-            step_of_reference(before ? &past : NULL, &moved, &taken->step, &found);
+            step_of_reference(before ? &past : NULL, &moved, &taken->step, 1, &found);
         }
         for (int j = 0; j < RESULTS; j++) {
             range[0].result[j] = fmin(range[0].result[j], found.result[j]);
@@ -151,6 +152,16 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
         range[1].result[k] += width;
     }
     return verdict_outside(taken, range, tolerance);
+}
+
+// Whether the reference takes the step the same in smaller panels, to a tenth of the allowed error.
+static bool is_sharp(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
+    TrialStep finer = *taken;
+    ReferenceStep found;
+    step_of_reference(before, &taken->scene, &taken->step, 2, &found);
+    memcpy(finer.step.result, found.result, sizeof found.result);
+    const ReferenceStep truth[2] = {taken->truth, taken->truth};
+    return found.known && verdict_outside(&finer, truth, tolerance).ratio <= SHARP;
 }
 
 // The error of F_t_settled over the allowed error, -1 if the reference does not know it.
@@ -185,10 +196,10 @@ static bool is_outside(const ReferenceScene* s, const ReferenceScene* first) {
 }
 
 // Returns false if the step is not judged.
-static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence* sequence) {
+static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence* sequence, bool settled) {
     const ReferenceScene* scene = &taken->scene;
     taken->verdict = (Verdict){.ratio = -1.0};
-    step_of_reference(before, scene, &taken->step, &taken->truth);
+    step_of_reference(before, scene, &taken->step, 1, &taken->truth);
     if (!taken->truth.known) {
         return false;
     }
@@ -197,16 +208,17 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
     if (!(verdict.ratio <= 1.0)) {
         verdict = verdict_by_rounding(before, taken, sequence->tolerance);
     }
-    if (!(verdict.ratio <= 1.0) && is_outside(scene, &sequence->step[0])) {
+    if (!(verdict.ratio <= 1.0) &&
+        (is_outside(scene, &sequence->step[0]) || !is_sharp(before, taken, sequence->tolerance))) {
         return false;
     }
-    const double settled = before == NULL ? settled_ratio(taken, sequence) : -1.0;
-    const bool counts = settled > verdict.ratio && (settled <= 1.0 || settles(scene));
-    taken->verdict = counts ? (Verdict){settled, SETTLED} : verdict;
+    const double of_settled = settled ? settled_ratio(taken, sequence) : -1.0;
+    const bool counts = of_settled > verdict.ratio && (of_settled <= 1.0 || settles(scene));
+    taken->verdict = counts ? (Verdict){of_settled, SETTLED} : verdict;
     return true;
 }
 
-void trial_run(Trial* trial, const Sequence* sequence) {
+void trial_run(Trial* trial, const Sequence* sequence, bool settled) {
     *trial = (Trial){0};
     FmuRun run;
     open_run(&run, &sequence->step[0], sequence);
@@ -224,7 +236,7 @@ void trial_run(Trial* trial, const Sequence* sequence) {
             taken->scene.delta_y_0 = taken->step.delta_y_start;
             taken->scene.slips = taken->step.slips_start;
         }
-        trial->unknown += !grade(taken, k == 0 ? NULL : &before, sequence);
+        trial->unknown += !grade(taken, k == 0 ? NULL : &before, sequence, settled && k == 0);
         trial->worst = fmax(trial->worst, taken->verdict.ratio);
         trial->steps++;
     }

@@ -14,7 +14,7 @@
 //   and the allowed error of an energy at least 1e-20 J.
 // A settled start is judged by F_t_start. A step is counted and not judged if it takes more panels or cycles than the
 // reference goes through; and if it misses while its motion may be chaotic and it has more than 10 periods, its kappa is below
-// 1e-3 as over a lifted tool, it starts beyond 100 limits, or the sequence starts from a settled state that is not promised.
+// 1e-3 as over a lifted tool, the reference differs by more than a tenth of the allowed error in smaller panels, it starts beyond 100 limits, or the sequence starts from a settled state that is not promised.
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 
@@ -56,6 +56,7 @@ typedef struct {
     TrialStep taken[MOST_STEPS];
 } Trial;
 
-void trial_run(Trial* trial, const Sequence* sequence);
+// settled: F_t_settled of the first step is judged, too.
+void trial_run(Trial* trial, const Sequence* sequence, bool settled);
 
 #endif
