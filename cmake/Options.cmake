@@ -6,10 +6,12 @@ add_library(fc_numbers INTERFACE)
 target_compile_options(fc_numbers INTERFACE
     -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections $<$<CONFIG:Release>:-O3>)
 # gcc clears and copies structures of some hundred bytes by an instruction that is slow to begin, several times in a step. An
-# option of the linker, where the code is made; clang-tidy would not know it.
+# option of the linker, where the code is made; clang-tidy would not know it. What stands behind many checks gcc takes for rare
+# and makes small and slow; with the last option it takes it for frequent.
 include(CheckLinkerFlag)
 set(block_strategy vector_loop:1024:noalign,libcall:-1:noalign)
-set(block_options -mmemset-strategy=${block_strategy} -mmemcpy-strategy=${block_strategy})
+set(block_options -mmemset-strategy=${block_strategy} -mmemcpy-strategy=${block_strategy}
+    --param=hot-bb-frequency-fraction=1000000)
 check_linker_flag(C "${block_options}" FC_HAS_BLOCK_STRATEGY)
 if(FC_HAS_BLOCK_STRATEGY)
     target_link_options(fc_numbers INTERFACE ${block_options})
