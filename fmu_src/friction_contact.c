@@ -61,37 +61,40 @@ static bool has_contact(const FcScene* scene) {
 // The scene from the absolute time start + rest on, with the inputs moving at these rates for ahead [s]
 // before it begins. Inputs that the law does not use stand still, and without a separation above 0 they count as an
 // open contact.
-static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
-                          const double rate[FC_INPUT_COUNT], double ahead) {
+static void scene_from(FcFrictionContact* contact, double start, double rest,
+                       const double rate[FC_INPUT_COUNT], double ahead, FcScene* scene) {
     const FcVariables* v = &contact->state.variables;
     const bool is_used = fc_uses_separation(&v->friction, v->contact.model);
-    const FcLinearInput V = {v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
-    FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
-    FcLinearInput E = {v->E, rate[FC_INPUT_E]};
-    FcLinearInput load = {v->load, rate[FC_INPUT_LOAD]};
-    E.value = fc_input_after(E, ahead);
-    load.value = load_after(load, ahead);
+    FcDrive* drive = &scene->drive;
+    drive->V = (FcLinearInput){v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
+    drive->V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
+    drive->d = (FcLinearInput){v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
+    drive->E = (FcLinearInput){v->E, rate[FC_INPUT_E]};
+    drive->load = (FcLinearInput){v->load, rate[FC_INPUT_LOAD]};
+    drive->E.value = fc_input_after(drive->E, ahead);
+    drive->load.value = load_after(drive->load, ahead);
+    drive->vibration = v->vibration;
     if (!is_used) {
-        d.rate = E.rate = load.rate = 0.0;
+        drive->d.rate = drive->E.rate = drive->load.rate = 0.0;
     }
-    const bool has_E = E.value > 0.0;
+    const bool has_E = drive->E.value > 0.0;
     if (!has_E) { // it is not used, or will be refused
-        E = (FcLinearInput){1.0, 0.0};
+        drive->E = (FcLinearInput){1.0, 0.0};
     }
-    FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
-    drive.V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
-    FcScene scene = fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
-    if (!is_used && !(has_E && has_contact(&scene))) {
-        scene.drive.d.value = 1.0;
-        scene.is_open = true;
+    fc_drive_start(drive, start, rest);
+    fc_scene_make(scene, &v->contact, contact_at(contact, drive->E.value), &v->friction, v->F_C);
+    if (!is_used && !(has_E && has_contact(scene))) {
+        scene->drive.d.value = 1.0;
+        scene->is_open = true;
     }
-    return scene;
 }
 
 FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
     const FcFrictionState* state = &contact->state;
-    return scene_from(contact, state->time, state->time_rest,
-                      state->next_rate_set ? state->next_rate : state->rate, 0.0);
+    FcScene scene;
+    scene_from(contact, state->time, state->time_rest, state->next_rate_set ? state->next_rate : state->rate,
+               0.0, &scene);
+    return scene;
 }
 
 // The largest load [N] under which a vibration of the amplitude a_d [m] leaves the surfaces apart.
@@ -273,16 +276,17 @@ FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
     double heat;
-    return fc_jump(scene, contact->state.time, &contact->state.past, fc_friction_contact_bristle(contact),
-                   &heat);
+    const FcBristle bristle = fc_friction_contact_bristle(contact);
+    return fc_jump(scene, contact->state.time, &contact->state.past, &bristle, &heat);
 }
 
 double* fc_input_of(FcVariables* v, FcInput input) {
-    double* const inputs[FC_INPUT_COUNT] = {
-        [FC_INPUT_V] = &v->V,       [FC_INPUT_D] = &v->d,     [FC_INPUT_E] = &v->E,
-        [FC_INPUT_LOAD] = &v->load, [FC_INPUT_V_Y] = &v->V_y,
-    };
-    return inputs[input];
+    static const size_t PLACES[FC_INPUT_COUNT] = {[FC_INPUT_V] = offsetof(FcVariables, V),
+                                                  [FC_INPUT_D] = offsetof(FcVariables, d),
+                                                  [FC_INPUT_E] = offsetof(FcVariables, E),
+                                                  [FC_INPUT_LOAD] = offsetof(FcVariables, load),
+                                                  [FC_INPUT_V_Y] = offsetof(FcVariables, V_y)};
+    return (double*)(void*)((char*)v + PLACES[input]);
 }
 
 static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still
@@ -301,7 +305,9 @@ static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
 }
 
 FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
-    return scene_from(contact, contact->state.time, contact->state.time_rest, rate ? rate : HELD, 0.0);
+    FcScene scene;
+    scene_from(contact, contact->state.time, contact->state.time_rest, rate ? rate : HELD, 0.0, &scene);
+    return scene;
 }
 
 // Combinations that single bounds do not cover: the separation must stay positive under vibration, the
@@ -538,7 +544,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
             t, h, DBL_MIN);
     }
     const FcFrictionState* before = &contact->state;
-    const FcScene scene = scene_from(contact, t, 0.0, before->next_rate, 0.0);
+    FcScene scene;
+    scene_from(contact, t, 0.0, before->next_rate, 0.0, &scene);
     if (!check_inputs(&before->variables, message) || !check_time(&scene.drive, t, message) ||
         !check_time(&scene.drive, t + h, message)) {
         return false;
@@ -548,7 +555,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcVariables* v = &before->variables;
     double heat;
-    const FcBristle start = fc_jump(&scene, t, &before->past, fc_friction_contact_bristle(contact), &heat);
+    const FcBristle bristle = fc_friction_contact_bristle(contact);
+    const FcBristle start = fc_jump(&scene, t, &before->past, &bristle, &heat);
     FcStepResult result;
     const FcMethod method = (FcMethod)v->solver.method;
     const bool moves = !fc_drive_is_constant(&scene.drive);
@@ -557,7 +565,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         response = fc_scene_contact(&scene, 0.0);
     }
     if (moves || !fc_method_formula(&scene, &response, method, h, start, &result)) {
-        const FcSolverOptions options = solver_options(v, &scene, h, fc_friction_contact_bristle(contact));
+        const FcSolverOptions options = solver_options(v, &scene, h, bristle);
         if (!fc_method_step(&scene, method, contact->cvode, &options, h, start, &result, message)) {
             return false;
         }
@@ -571,7 +579,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     FcScene moved;
     const bool ends_elsewhere = moves || inputs_move(before->next_rate); // also one that the law does not use
     if (ends_elsewhere) {
-        moved = scene_from(contact, t + h, time_rest, before->next_rate, h);
+        scene_from(contact, t + h, time_rest, before->next_rate, h, &moved);
         response = fc_scene_contact(&moved, 0.0);
     }
     const FcScene* end = ends_elsewhere ? &moved : &scene;

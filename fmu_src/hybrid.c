@@ -228,8 +228,8 @@ static void begin_regime(FcFrictionContact* contact) {
     View now;
     look(contact, &now);
     double heat;
-    FcBristle bristle =
-        fc_jump(&now.scene, state->time, &state->past, fc_friction_contact_bristle(contact), &heat);
+    const FcBristle before = fc_friction_contact_bristle(contact);
+    FcBristle bristle = fc_jump(&now.scene, state->time, &state->past, &before, &heat);
     if (bristle.slips != 0 && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.slips = 0;
     }

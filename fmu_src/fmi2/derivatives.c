@@ -201,11 +201,9 @@ static FcDirection direction_of(const FcFrictionContact* contact, const FcVariab
     const FcVariables* v = &contact->state.variables;
     const FcVibration* of = &v->vibration;
     const FcVibration* change = &along->vibration;
-    FcVibration turning = *of;
-    turning.V_1 = 1.0; // without it there would be no phase if nothing vibrates
-    const FcLinearInput none = {0.0, 0.0};
-    const FcDrive drive =
-        fc_drive_make(none, none, none, none, turning, contact->state.time, contact->state.time_rest);
+    FcDrive drive = {.vibration = *of};
+    drive.vibration.V_1 = 1.0; // without it there would be no phase if nothing vibrates
+    fc_drive_start(&drive, contact->state.time, contact->state.time_rest);
     const double time = contact->state.time + contact->state.time_rest;
     const double turn = drive.omega * (time * change->f / of->f + along->time);
     const double angle = drive.theta_0;

@@ -18,21 +18,21 @@ static double phase_in_cycles(double f, double t) {
     return fraction - rint(fraction);
 }
 
-FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
-                      FcVibration vibration, double start, double rest) {
-    FcDrive drive = {.V = V, .d = d, .E = E, .load = load, .vibration = vibration};
-    if (fc_drive_vibrates(&drive)) {
-        assert(vibration.f > 0.0);
-        drive.omega = FC_TWO_PI * vibration.f;
-        drive.cos_phase_d = cos(vibration.phase_d);
-        drive.sin_phase_d = sin(vibration.phase_d);
-        if (vibration.V_2 != 0.0) {
-            drive.cos_phase_2 = cos(vibration.phase_2);
-            drive.sin_phase_2 = sin(vibration.phase_2);
+void fc_drive_start(FcDrive* drive, double start, double rest) {
+    const FcVibration* vibration = &drive->vibration;
+    drive->omega = drive->theta_0 = 0.0;
+    drive->cos_phase_d = drive->sin_phase_d = drive->cos_phase_2 = drive->sin_phase_2 = 0.0;
+    if (fc_drive_vibrates(drive)) {
+        assert(vibration->f > 0.0);
+        drive->omega = FC_TWO_PI * vibration->f;
+        drive->cos_phase_d = cos(vibration->phase_d);
+        drive->sin_phase_d = sin(vibration->phase_d);
+        if (vibration->V_2 != 0.0) {
+            drive->cos_phase_2 = cos(vibration->phase_2);
+            drive->sin_phase_2 = sin(vibration->phase_2);
         }
-        drive.theta_0 = FC_TWO_PI * (phase_in_cycles(vibration.f, start) + vibration.f * rest);
+        drive->theta_0 = FC_TWO_PI * (phase_in_cycles(vibration->f, start) + vibration->f * rest);
     }
-    return drive;
 }
 
 bool fc_drive_vibrates(const FcDrive* drive) {

@@ -48,10 +48,9 @@ typedef struct {
     double theta_0; // rad, phase at local time 0
 } FcDrive;
 
-// The drive of a step that starts at the absolute time start + rest [s]; rest is the part that rounding cut
-// off start. V_y is 0 until it is set.
-FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
-                      FcVibration vibration, double start, double rest);
+// Starts a drive whose inputs and vibration are set, in place: a step begins at the absolute time start + rest [s]; rest is
+// the part that rounding cut off start.
+void fc_drive_start(FcDrive* drive, double start, double rest);
 
 // The same drive with its local time starting at t [s]; with vibration, t a whole number of periods.
 FcDrive fc_drive_later(const FcDrive* drive, double t);

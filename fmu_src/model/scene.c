@@ -37,23 +37,26 @@ static double open_separation(const FcContactAtModulus* at_E) {
     return fc_least(without_load, d);
 }
 
-FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
-                      const FcFriction* friction, double F_C, const FcDrive* drive) {
-    FcScene scene = {.contact = contact, .friction = friction, .F_C = F_C, .drive = *drive, .at_E = *at_E};
-    if (drive->vibration.a_d != 0.0 && (follows_load(&scene) || fc_limit_follows_load(scene.friction))) {
-        scene.log_swell = fc_contact_log_swell(at_E, drive->vibration.a_d);
+void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcContactAtModulus* at_E,
+                   const FcFriction* friction, double F_C) {
+    FcDrive* drive = &scene->drive;
+    scene->contact = contact;
+    scene->friction = friction;
+    scene->F_C = F_C;
+    scene->at_E = *at_E;
+    const bool by_load = contact->input == FC_CONTACT_LOAD;
+    const bool swells = drive->vibration.a_d != 0.0 && (by_load || fc_limit_follows_load(friction));
+    scene->log_swell = swells ? fc_contact_log_swell(at_E, drive->vibration.a_d) : 0.0;
+    scene->floats = by_load && (drive->load.rate != 0.0 || drive->E.rate != 0.0);
+    if (!by_load) {
+        drive->load.rate = 0.0;
+        scene->is_open = at_E->decay * drive->d.value > NOT_FAR && drive->d.value > open_separation(at_E);
+        return;
     }
-    if (!follows_load(&scene)) {
-        scene.drive.load.rate = 0.0;
-        scene.is_open = at_E->decay * drive->d.value > NOT_FAR && drive->d.value > open_separation(at_E);
-        return scene;
-    }
-    scene.is_open = !(drive->load.value > NOTHING);
-    scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
-    const bool rests = !scene.floats && !scene.is_open;
-    scene.drive.d.value = rests ? rest_separation(&scene, at_E->load_0, drive->load.value) : 0.0;
-    scene.drive.d.rate = 0.0;
-    return scene;
+    scene->is_open = !(drive->load.value > NOTHING);
+    const bool rests = !scene->floats && !scene->is_open;
+    drive->d.value = rests ? rest_separation(scene, at_E->load_0, drive->load.value) : 0.0;
+    drive->d.rate = 0.0;
 }
 
 double fc_scene_closed_by(const FcScene* scene) {
@@ -113,10 +116,12 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
 }
 
 FcScene fc_scene_later(const FcScene* scene, double t) {
-    const FcDrive drive = fc_drive_later(&scene->drive, t);
+    FcScene later = {.drive = fc_drive_later(&scene->drive, t)};
+    const double E = later.drive.E.value;
     const FcContactAtModulus at_E =
-        drive.E.rate == 0.0 ? scene->at_E : fc_contact_at_modulus(scene->contact, drive.E.value);
-    return fc_scene_make(scene->contact, &at_E, scene->friction, scene->F_C, &drive);
+        later.drive.E.rate == 0.0 ? scene->at_E : fc_contact_at_modulus(scene->contact, E);
+    fc_scene_make(&later, scene->contact, &at_E, scene->friction, scene->F_C);
+    return later;
 }
 
 FcScene fc_scene_from(const FcScene* scene, double t) {

@@ -27,9 +27,10 @@ typedef struct {
     bool is_open; // at the start: no load presses the surfaces together, or they are far apart
 } FcScene;
 
-// at_E is the contact at the drive's modulus at the start. Keeps the pointers.
-FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
-                      const FcFriction* friction, double F_C, const FcDrive* drive);
+// Completes a scene, in place, whose drive is started (fc_drive_start). at_E is the contact at the drive's modulus at the start.
+// Keeps the pointers.
+void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcContactAtModulus* at_E,
+                   const FcFriction* friction, double F_C);
 
 // The scene with its local time starting at t [s]; with vibration, t a whole number of periods.
 FcScene fc_scene_later(const FcScene* scene, double t);

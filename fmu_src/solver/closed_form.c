@@ -12,7 +12,7 @@ void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, do
     FcCoefficients at = fc_scene_coefficients_of(scene, contact);
     if (!fc_is_planar(scene, from)) {
         const FcMap map = fc_map_of_constant_scene(&at, h);
-        *result = fc_result_from((FcBristle){.delta = from.delta}, 1.0);
+        fc_result_start(result, (FcBristle){.delta = from.delta}, 1.0);
         fc_map_apply(&map, result);
         return;
     }

@@ -78,7 +78,8 @@ static bool lies_on_bound(const Block* block, double k, double delta) {
 
 // A period of a scene from a bristle.
 static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
-    FcStepResult result = fc_result_from(start, *block->evaluations);
+    FcStepResult result;
+    fc_result_start(&result, start, *block->evaluations);
     fc_take_pieces(scene, block->of->options, block->period, &result);
     *block->evaluations = result.evaluations;
     return result;

@@ -48,7 +48,7 @@ bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, F
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, FcBristle from, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
-    *result = fc_result_from(from, 0.0);
+    fc_result_start(result, from, 0.0);
     const bool is_planar = fc_is_planar(scene, from);
     if (!takes_default(scene, method)) {
         if (is_planar && method != FC_METHOD_CVODE) {
@@ -79,7 +79,8 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     if (!fc_drive_vibrates(&scene->drive)) {
         return fc_slides_for_ever(scene, from, force);
     }
-    FcStepResult end = fc_result_from(from, *evaluations);
+    FcStepResult end;
+    fc_result_start(&end, from, *evaluations);
     *force = fc_periods_settled(scene, options, &end);
     *evaluations = end.evaluations;
     // An excess over a bound by rounding would become heat of the first step.

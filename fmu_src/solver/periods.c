@@ -307,7 +307,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
                     return;
                 }
                 if (isinf(periods)) { // the sums of free periods would take digits from the cycle's
-                    *total = fc_result_from(fc_bristle_of(total), total->evaluations);
+                    fc_result_start(total, fc_bristle_of(total), total->evaluations);
                 }
                 walk->met = *total;
                 walk->met_at = walk->done;

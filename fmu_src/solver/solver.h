@@ -57,8 +57,8 @@ static inline FcBristle fc_bristle_of(const FcStepResult* result) {
 }
 
 // The result with which a step begins, after so many evaluations.
-static inline FcStepResult fc_result_from(FcBristle start, double evaluations) {
-    return (FcStepResult){
+static inline void fc_result_start(FcStepResult* result, FcBristle start, double evaluations) {
+    *result = (FcStepResult){
         .delta = start.delta, .slips = start.slips, .evaluations = evaluations, .delta_y = start.delta_y};
 }
 

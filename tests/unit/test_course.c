@@ -29,11 +29,11 @@ static void make(Course* course, FcLinearInput V, FcLinearInput V_y, FcVibration
                                     .limit = FC_LIMIT_CONSTANT,
                                     .staticRatio = 1.5,
                                     .V_S = random_log(1e-3, 1.0)};
-    FcDrive drive = fc_drive_make(V, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
-                                  (FcLinearInput){1.0, 0.0}, vibration, phase / F, 0.0);
-    drive.V_y = V_y;
+    course->scene.drive = (FcDrive){
+        .V = V, .d = {14e-6, 0.0}, .E = {58e9, 0.0}, .load = {1.0, 0.0}, .V_y = V_y, .vibration = vibration};
+    fc_drive_start(&course->scene.drive, phase / F, 0.0);
     const FcContactAtModulus at_E = fc_contact_at_modulus(&course->contact, 58e9);
-    course->scene = fc_scene_make(&course->contact, &at_E, &course->friction, F_C, &drive);
+    fc_scene_make(&course->scene, &course->contact, &at_E, &course->friction, F_C);
     fc_plane_make(&course->plane, &course->scene);
     course->plane.on_line = !fc_is_planar(&course->scene, (FcBristle){0});
     course->h = h;

@@ -19,8 +19,10 @@ typedef struct {
 } Case;
 
 static FcDrive drive_of(Case c) {
-    return fc_drive_make((FcLinearInput){c.V, c.V_rate}, HELD, HELD, HELD,
-                         (FcVibration){.f = F, .V_1 = c.V_1}, c.start, c.rest);
+    FcDrive drive = {
+        .V = {c.V, c.V_rate}, .d = HELD, .E = HELD, .load = HELD, .vibration = {.f = F, .V_1 = c.V_1}};
+    fc_drive_start(&drive, c.start, c.rest);
+    return drive;
 }
 
 // f t modulo 1 in whole numbers: every double t from 2^29 to 2^30 s is a multiple of 2^-23 s, and f is one of 1 Hz.
@@ -149,8 +151,8 @@ static void reversals_of_linear_inputs(void) {
 // V turns in a step over which a slow vibration goes on by less than its phase is known to.
 static void reversal_of_a_fast_input_over_a_slow_vibration(void) {
     const FcLinearInput V = {0.0118295, -1.177e9};
-    const FcDrive drive =
-        fc_drive_make(V, HELD, HELD, HELD, (FcVibration){.f = 1e-4, .V_1 = 1e-3}, 1000.0, 0.0);
+    FcDrive drive = {.V = V, .d = HELD, .E = HELD, .load = HELD, .vibration = {.f = 1e-4, .V_1 = 1e-3}};
+    fc_drive_start(&drive, 1000.0, 0.0);
     const double end = 1.83e-11;
     const FcDriveEvent event = fc_drive_next_event(&drive, 0.0, end);
     CHECK(event.time < end && event.reversal);
@@ -198,7 +200,7 @@ static void what_is_left_of_E_and_load_has_its_digits(void) {
         const uint64_t ticks = (start << 40) / rate;
         const double left = (double)((start << 40) - rate * ticks) * 0x1p-40;
         const FcLinearInput falls = {(double)start, -(double)rate};
-        const FcDrive drive = fc_drive_make(HELD, HELD, falls, falls, (FcVibration){.f = F}, 0.0, 0.0);
+        const FcDrive drive = {.V = HELD, .d = HELD, .E = falls, .load = falls};
         CHECK_NEAR(fc_drive_E(&drive, (double)ticks * 0x1p-40), left, 1e-15);
         CHECK_NEAR(fc_drive_load(&drive, (double)ticks * 0x1p-40), left, 1e-15);
     }

@@ -21,12 +21,15 @@ static FcFriction law(int model, int limit) {
 
 // Everything moves: V, d, E, the load, both vibrations. The scene points into what the caller keeps.
 static FcScene moving_scene(const FcContactParameters* contact, const FcFriction* friction, double rates) {
-    const FcDrive drive =
-        fc_drive_make((FcLinearInput){0.1, 900.0 * rates}, (FcLinearInput){14e-6, 0.02 * rates},
-                      (FcLinearInput){9e9, 3e13 * rates}, (FcLinearInput){312.0, -1e6 * rates},
-                      (FcVibration){.f = F, .V_1 = 0.3, .a_d = 1.1e-6, .phase_d = 0.7}, 0.3e-5, 0.0);
+    FcScene scene = {.drive = {.V = {0.1, 900.0 * rates},
+                               .d = {14e-6, 0.02 * rates},
+                               .E = {9e9, 3e13 * rates},
+                               .load = {312.0, -1e6 * rates},
+                               .vibration = {.f = F, .V_1 = 0.3, .a_d = 1.1e-6, .phase_d = 0.7}}};
+    fc_drive_start(&scene.drive, 0.3e-5, 0.0);
     const FcContactAtModulus at_E = fc_contact_at_modulus(contact, 9e9);
-    return fc_scene_make(contact, &at_E, friction, 55.0, &drive);
+    fc_scene_make(&scene, contact, &at_E, friction, 55.0);
+    return scene;
 }
 
 typedef struct {
