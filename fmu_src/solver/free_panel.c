@@ -55,15 +55,6 @@ FC_INLINE void by_displacement(const FcNodes* nodes, FcVector delta_0, bool for_
     }
 }
 
-// sigma and g are constant along a line: delta = D + (delta_0 - D) e^(-X / D), D with the sign of V.
-FC_INLINE void by_path(const FcNodes* nodes, double delta_0, double D, bool for_any, Solution* of) {
-    for (int i = 0; i < POINTS; i++) {
-        of->less_1[i] = expm1(-nodes->moved[i] / D);
-        of->Q_x[i] = for_any ? -D * of->less_1[i] : delta_0 + (delta_0 - D) * of->less_1[i];
-        of->Q_y[i] = 0.0;
-    }
-}
-
 // The integrals of F = sigma delta, F V, delta' V = (V - r delta) V and F (V - delta') = sigma r delta^2 with delta = P
 // delta_0 + Q. weight is over the duration, z = r times the duration.
 FC_INLINE void integrate(const double* weight, bool for_any, const double* P, const double* Q,
@@ -109,19 +100,42 @@ FC_INLINE void integrate(const double* weight, bool for_any, const double* P, co
     map->heat_offset = fc_pair_sum(heat_offset);
 }
 
-// Deflection, work and heat of a bristle with constant sigma and g are closed forms of the path; the impulse is the
-// quadrature's.
-FC_INLINE void take_path(const FcFrom* from, double sigma, double limit, double X, FcMap* map) {
-    const FcCoefficients mean = {.V = X, .sigma = sigma, .limit = limit};
+// sigma and g are constant along a line: over the path X, with D of the sign of V, delta = D + (delta_0 - D) e^(-X / D).
+// Deflection, work and heat are closed forms of the path; the impulse is the quadrature's. There is no damping.
+FC_INLINE void take_path(const FcNodes* nodes, const FcFrom* from, bool for_any, FcPanel* panel) {
+    const FcCoefficients mean = {.V = nodes->moved[LAST], .sigma = panel->sigma, .limit = panel->limit};
     const FcMap path = fc_map_of_constant_scene(&mean, 1.0);
-    const double start = from->for_any ? 0.0 : from->delta.x;
-    map->relaxation = from->for_any ? path.relaxation : 1.0;
-    map->offset = start - path.relaxation * start + path.offset;
-    map->work_slope = from->for_any ? path.work_slope : 0.0;
-    map->work_offset = path.work_slope * start + path.work_offset;
-    map->heat_square = from->for_any ? path.heat_square : 0.0;
-    map->heat_slope = from->for_any ? path.heat_slope : 0.0;
-    map->heat_offset = (path.heat_square * start + path.heat_slope) * start + path.heat_offset;
+    const double start = for_any ? 0.0 : from->delta.x;
+    const double D = (nodes->side < 0 ? -1.0 : 1.0) * panel->limit / panel->sigma;
+    const double farthest = 700.0 * fabs(D); // e^-700 of the start
+    double FC_PAIRED slope[POINTS];          // of the force, as a density over the panel
+    double FC_PAIRED offset[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        const double X = nodes->side * nodes->moved[i];
+        const double less_1 = fc_exp_less((X > farthest ? farthest : X) / -fabs(D), 1.0);
+        const double force = panel->sigma * nodes->tau[i] / nodes->duration;
+        slope[i] = force * (1.0 + less_1);
+        offset[i] = force * (start + (start - D) * less_1);
+    }
+    panel->along =
+        (FcMap){.relaxation = for_any ? path.relaxation : 1.0,
+                .offset = start - path.relaxation * start + path.offset,
+                .impulse_offset = nodes->duration * fc_dot(POINTS, FC_RADAU.weight, offset),
+                .work_offset = path.work_slope * start + path.work_offset,
+                .heat_offset = (path.heat_square * start + path.heat_slope) * start + path.heat_offset};
+    panel->across = (FcMap){.relaxation = panel->along.relaxation};
+    if (for_any) {
+        panel->along.impulse_slope = nodes->duration * fc_dot(POINTS, FC_RADAU.weight, slope);
+        panel->along.work_slope = path.work_slope;
+        panel->along.heat_square = path.heat_square;
+        panel->along.heat_slope = path.heat_slope;
+    }
+    for (int i = 0; i < POINTS && for_any; i++) {
+        offset[i] += from->delta.x * slope[i];
+    }
+    panel->end_error = 0.0;
+    panel->mean_error =
+        fc_radau_quadrature_error(offset) + (for_any ? from->scale * fc_radau_quadrature_error(slope) : 0.0);
 }
 
 // The integrals of the constant force `held` are those of its quadrature: replaces them by exact ones. So a settled force
@@ -156,13 +170,14 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     panel->limit = nodes->limit[LAST];
     panel->rate = rate[LAST] * over_duration;
 
+    if (relaxes && from->is_still && !planar) {
+        take_path(nodes, from, for_any, panel);
+        return;
+    }
+
     // The deflection at the points.
     Solution of;
-    const bool is_known = relaxes && from->is_still && !planar;
-    const double D = (nodes->side < 0 ? -1.0 : 1.0) * panel->limit / panel->sigma;
-    if (is_known) {
-        by_path(nodes, from->delta.x, D, for_any, &of);
-    } else if (!relaxes) {
+    if (!relaxes) {
         by_displacement(nodes, from->delta, for_any, &of);
     } else {
         by_collocation(nodes, z, from->delta, planar, for_any, &of);
@@ -196,33 +211,28 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
         F[i] = nodes->sigma[i] * x[i];
         slope[i] = nodes->tau[i] * nodes->V[i] - z[i] * x[i];
     }
-    double speed = from->speed;
     double held = 0.0;
-    if (is_known) {
-        take_path(from, panel->sigma, panel->limit, nodes->moved[LAST], &panel->along);
-        speed = INFINITY;
-    } else if (from->limit_stands && !planar && relaxes) {
+    if (from->limit_stands && !planar && relaxes) {
         held = F[LAST];
         exact_integrals(nodes, held, panel->limit, &panel->along);
     }
-    const bool has_defect = relaxes && !is_known;
-    double defect = has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
-    double quadrature = fc_error_of_force(nodes, speed, held, relaxes, F, nodes->V);
+    double defect = relaxes ? fc_radau_unresolved(slope, panel->z) : 0.0;
+    double quadrature = fc_error_of_force(nodes, from->speed, held, relaxes, F, nodes->V);
     if (planar) {
         for (int i = 0; i < POINTS; i++) {
             F[i] = nodes->sigma[i] * y[i];
             slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
         }
-        defect += has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
-        quadrature += fc_error_of_force(nodes, speed, 0.0, relaxes, F, nodes->V_y);
+        defect += relaxes ? fc_radau_unresolved(slope, panel->z) : 0.0;
+        quadrature += fc_error_of_force(nodes, from->speed, 0.0, relaxes, F, nodes->V_y);
     }
     if (from->scale != 0.0) {
         for (int i = 0; i < POINTS; i++) {
             F[i] = from->scale * nodes->sigma[i] * P[i];
             slope[i] = -z[i] * P[i];
         }
-        defect += has_defect ? from->scale * fc_radau_unresolved(slope, panel->z) : 0.0;
-        quadrature += fc_error_of_force(nodes, speed, 0.0, relaxes, F, nodes->V);
+        defect += relaxes ? from->scale * fc_radau_unresolved(slope, panel->z) : 0.0;
+        quadrature += fc_error_of_force(nodes, from->speed, 0.0, relaxes, F, nodes->V);
     }
     // In the plane r may be less between its ends than at both.
     fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);

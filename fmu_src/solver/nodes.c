@@ -247,7 +247,12 @@ FC_WITH_AVX void fc_nodes_make(const FcPlane* plane, const FcPart* part, double 
         nodes->limit[i] = nodes->static_limit[i];
     }
     const FcFriction* friction = plane->scene->friction;
-    for (int i = 0; i < POINTS && fc_has_stribeck_curve(friction); i++) {
-        nodes->limit[i] /= fc_static_over_limit(friction, nodes->speed[i]);
+    if (fc_has_stribeck_curve(friction)) {
+        const double R = friction->staticRatio;
+        const double farthest = 26.0 * friction->V_S; // e^-676 of the curve
+        for (int i = 0; i < POINTS; i++) {
+            const double V = (nodes->speed[i] > farthest ? farthest : nodes->speed[i]) / friction->V_S;
+            nodes->limit[i] *= (1.0 + (R - 1.0) * fc_exp_less(-V * V, 0.0)) / R;
+        }
     }
 }
