@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "model/constants.h"
 #include "model/extremes.h"
 #include "solver/method.h"
 
@@ -89,12 +90,38 @@ static void scene_from(FcFrictionContact* contact, double start, double rest,
     }
 }
 
-FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
+static const double* present_rates(const FcFrictionState* state) {
+    return state->next_rate_set ? state->next_rate : state->rate;
+}
+
+static FcBody body_of(const FcVariables* v, const double rate[FC_INPUT_COUNT]) {
+    return (FcBody){.m = v->body.m, .F = {v->body.F, rate[FC_INPUT_F]}, .v = v->body.v, .x = v->body.x};
+}
+
+FcBody fc_friction_contact_body(const FcFrictionContact* contact) {
+    return body_of(&contact->state.variables, present_rates(&contact->state));
+}
+
+// The scene at the time t [s] with the motion of the body: first as before a jump of the inputs, by
+// which the force that moves the body is that of the deflection after it.
+static FcScene scene_with_body(const FcFrictionContact* contact, const FcScene* scene, double t,
+                               const double rate[FC_INPUT_COUNT]) {
+    const FcBody body = body_of(&contact->state.variables, rate);
+    double heat;
+    const FcBristle bristle = fc_friction_contact_bristle(contact);
+    const FcScene before = fc_body_scene(scene, &body, bristle);
+    return fc_body_scene(scene, &body, fc_jump(&before, t, &contact->state.past, &bristle, &heat));
+}
+
+static FcScene present_scene(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
     const FcFrictionState* state = &contact->state;
     FcScene scene;
-    scene_from(contact, state->time, state->time_rest, state->next_rate_set ? state->next_rate : state->rate,
-               0.0, &scene);
-    return scene;
+    scene_from(contact, state->time, state->time_rest, rate, 0.0, &scene);
+    return state->variables.body.m > 0.0 ? scene_with_body(contact, &scene, state->time, rate) : scene;
+}
+
+FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
+    return present_scene(contact, present_rates(&contact->state));
 }
 
 // The largest load [N] under which a vibration of the amplitude a_d [m] leaves the surfaces apart.
@@ -144,6 +171,34 @@ static bool fail_input(FcMessage* message, const char* name, double value, const
     return fc_message_set(message, "%s = %.9g %s must be above 0 %s: the scene uses it%s", name, value, unit,
                           unit,
                           value == 0.0 ? "; an input that is not connected may have been sent as 0" : "");
+}
+
+// A mass moves along V alone, by CVODE or Coulomb's law.
+static bool check_body(const FcVariables* v, const double rate[FC_INPUT_COUNT], FcMessage* message) {
+    if (v->body.m == 0.0) {
+        return true;
+    }
+    if (v->solver.method > FC_METHOD_CVODE) {
+        return fc_message_set(
+            message, "body.m = %.9g kg with solver.method = %d: a mass needs collocation (1) or cvode (2)",
+            v->body.m, v->solver.method);
+    }
+    const struct {
+        const char* name;
+        double value;
+        const char* unit;
+    } across[] = {{"V_y", v->V_y, "m/s"},
+                  {"the derivative of V_y", rate[FC_INPUT_V_Y], "m/s2"},
+                  {"vibration.V_2", v->vibration.V_2, "m/s"},
+                  {"delta_y_0", v->delta_y_0, "m"}};
+    for (size_t i = 0; i < sizeof across / sizeof *across; i++) {
+        if (across[i].value != 0.0) {
+            return fc_message_set(
+                message, "%s = %.9g %s must be 0 %s with body.m = %.9g kg: a mass moves along V alone",
+                across[i].name, across[i].value, across[i].unit, across[i].unit, v->body.m);
+        }
+    }
+    return true;
 }
 
 // The inputs that the law uses must be above 0. A load of 0 opens the contact.
@@ -234,10 +289,15 @@ bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* messa
         of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
 }
 
-// (F_t, F_y) of a bristle within its bound; false if an output is beyond the largest number.
-static bool find_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle,
-                       FcVector* force, FcMessage* message) {
+// (F_t, F_y) of a bristle within its bound, or of a mass at rest by Coulomb's law; false if an output is beyond the
+// largest number.
+static bool find_force(const FcScene* scene, const FcContactResponse* contact, const FcBody* body,
+                       FcBristle bristle, FcVector* force, FcMessage* message) {
     *force = fc_force(scene, contact, bristle);
+    if (body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene)) {
+        bool sticks;
+        force->x = fc_body_rigid_force(scene, body, &sticks);
+    }
     if (!isfinite(bristle.delta) || !isfinite(bristle.delta_y)) {
         const Fastest of = fastest(&scene->drive);
         return fc_message_set(message, "%s is beyond the largest number: %s = %.9g m/s with %s = %.9g m/s",
@@ -281,11 +341,10 @@ FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const Fc
 }
 
 double* fc_input_of(FcVariables* v, FcInput input) {
-    static const size_t PLACES[FC_INPUT_COUNT] = {[FC_INPUT_V] = offsetof(FcVariables, V),
-                                                  [FC_INPUT_D] = offsetof(FcVariables, d),
-                                                  [FC_INPUT_E] = offsetof(FcVariables, E),
-                                                  [FC_INPUT_LOAD] = offsetof(FcVariables, load),
-                                                  [FC_INPUT_V_Y] = offsetof(FcVariables, V_y)};
+    static const size_t PLACES[FC_INPUT_COUNT] = {
+        [FC_INPUT_V] = offsetof(FcVariables, V),     [FC_INPUT_D] = offsetof(FcVariables, d),
+        [FC_INPUT_E] = offsetof(FcVariables, E),     [FC_INPUT_LOAD] = offsetof(FcVariables, load),
+        [FC_INPUT_V_Y] = offsetof(FcVariables, V_y), [FC_INPUT_F] = offsetof(FcVariables, body.F)};
     return (double*)(void*)((char*)v + PLACES[input]);
 }
 
@@ -305,16 +364,16 @@ static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
 }
 
 FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
-    FcScene scene;
-    scene_from(contact, contact->state.time, contact->state.time_rest, rate ? rate : HELD, 0.0, &scene);
-    return scene;
+    return present_scene(contact, rate ? rate : HELD);
 }
 
 // Combinations that single bounds do not cover: the separation must stay positive under vibration, the
 // stiffness and the limit finite and above 0, and the time must determine the phase.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
-    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    return check_inputs(&contact->state.variables, message) &&
+    FcScene scene;
+    scene_from(contact, contact->state.time, contact->state.time_rest, HELD, 0.0, &scene);
+    const FcVariables* v = &contact->state.variables;
+    return check_inputs(v, message) && check_body(v, contact->state.next_rate, message) &&
            check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
 }
 
@@ -324,7 +383,8 @@ static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
     const FcContactResponse response = fc_scene_contact(&scene, 0.0);
     FcVector force;
     const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
-    if (!find_force(&scene, &response, bristle, &force, message)) {
+    const FcBody body = fc_friction_contact_body(contact);
+    if (!find_force(&scene, &response, &body, bristle, &force, message)) {
         return false;
     }
     fc_set_outputs(v, force, (FcVector){v->F_t_mean, v->F_y_mean}, &response);
@@ -347,11 +407,36 @@ bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* me
     return true;
 }
 
-bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message) {
-    if (method == FC_METHOD_CVODE && contact->cvode == NULL) {
-        contact->cvode = fc_cvode_new(message);
+bool fc_friction_contact_sticks(FcFrictionContact* contact) {
+    const FcScene scene = fc_friction_contact_scene(contact);
+    const FcBody body = fc_friction_contact_body(contact);
+    bool sticks = false;
+    if (body.m > 0.0 && scene.friction->model == FC_COULOMB && fc_body_rests(&scene)) {
+        fc_body_rigid_force(&scene, &body, &sticks);
     }
-    return method != FC_METHOD_CVODE || contact->cvode != NULL;
+    return sticks;
+}
+
+FcVector fc_friction_contact_force_rate(FcFrictionContact* contact) {
+    FcScene scene = fc_friction_contact_scene(contact);
+    const FcBody body = fc_friction_contact_body(contact);
+    if (fc_friction_contact_sticks(contact)) {
+        return (FcVector){body.F.rate + body.m * fc_drive_velocity(&scene.drive, 0.0).curvature, 0.0};
+    }
+    if (body.m > 0.0 && scene.friction->model == FC_COULOMB) {
+        scene.drive.V.rate += (body.F.value - contact->state.variables.F_t) / body.m;
+    }
+    return fc_force_rate(&scene, fc_friction_contact_reached(contact, &scene));
+}
+
+bool fc_friction_contact_prepare(FcFrictionContact* contact, const FcVariables* of, FcMessage* message) {
+    const bool has_body = of->body.m > 0.0;
+    const bool is_used = has_body ? of->friction.model != FC_COULOMB : of->solver.method == FC_METHOD_CVODE;
+    struct FcCvode** cvode = &contact->cvode[has_body];
+    if (is_used && *cvode == NULL) {
+        *cvode = fc_cvode_new(has_body, message);
+    }
+    return !is_used || *cvode != NULL;
 }
 
 // The finest tolerance of the bristle's force. Rounding: 4500 eps. A finer one would need digits that do not
@@ -429,10 +514,12 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     state->Q_f_rest = 0.0;
     memcpy(state->rate, HELD, sizeof state->rate);
     state->hybrid = (FcHybrid){0};
+    FcVariables* v = &state->variables;
+    v->body.v = v->body.m > 0.0 ? v->body.v_0 : 0.0;
+    v->body.x = v->body.m > 0.0 ? v->body.x_0 : 0.0;
     if (!fc_friction_contact_check(&fresh, message)) {
         return false;
     }
-    FcVariables* v = &state->variables;
     v->W_f = 0.0;
     v->Q_f = 0.0;
     v->solver.evaluations = 0.0;
@@ -452,7 +539,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
             "no period is like another",
             FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
     }
-    if (!update_outputs(&fresh, message) || !fc_friction_contact_prepare(&fresh, v->solver.method, message)) {
+    if (!update_outputs(&fresh, message) || !fc_friction_contact_prepare(&fresh, v, message)) {
         return false;
     }
     v->F_t_mean = v->F_t;
@@ -462,8 +549,10 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
 }
 
 void fc_friction_contact_free(FcFrictionContact* contact) {
-    fc_cvode_free(contact->cvode);
-    contact->cvode = NULL;
+    for (int has_body = 0; has_body <= 1; has_body++) {
+        fc_cvode_free(contact->cvode[has_body]);
+        contact->cvode[has_body] = NULL;
+    }
 }
 
 // Adds the damping of the bristle, which Coulomb's law does not have, and the viscous friction to the result
@@ -510,6 +599,7 @@ static void accumulate(double* sum, double* rest, double part) {
 static void commit(FcFrictionState* state, double h, const FcStepResult* result, FcBristle reached,
                    const FcPast* past) {
     FcVariables* v = &state->variables;
+    v->body.F += state->next_rate[FC_INPUT_F] * h;
     state->slips = fc_side_of_slip(reached);
     state->past = *past;
     v->V += state->next_rate[FC_INPUT_V] * h;
@@ -546,17 +636,25 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcFrictionState* before = &contact->state;
     FcScene scene;
     scene_from(contact, t, 0.0, before->next_rate, 0.0, &scene);
-    if (!check_inputs(&before->variables, message) || !check_time(&scene.drive, t, message) ||
-        !check_time(&scene.drive, t + h, message)) {
+    if (!check_inputs(&before->variables, message) ||
+        !check_body(&before->variables, before->next_rate, message) ||
+        !check_time(&scene.drive, t, message) || !check_time(&scene.drive, t + h, message)) {
         return false;
     }
     if (is_to_be_checked(&scene) && !check_scene(&scene, h, message)) {
         return false;
     }
     const FcVariables* v = &before->variables;
+    FcBody body = body_of(v, before->next_rate);
+    const bool has_body = body.m > 0.0;
+    FcScene moved; // seen by the bristle, and then at the end
+    if (has_body) {
+        moved = scene_with_body(contact, &scene, t, before->next_rate);
+    }
+    const FcScene* seen = has_body ? &moved : &scene;
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const FcBristle start = fc_jump(&scene, t, &before->past, &bristle, &heat);
+    const FcBristle start = fc_jump(seen, t, &before->past, &bristle, &heat);
     FcStepResult result;
     const FcMethod method = (FcMethod)v->solver.method;
     const bool moves = !fc_drive_is_constant(&scene.drive);
@@ -564,34 +662,41 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     if (!moves) {
         response = fc_scene_contact(&scene, 0.0);
     }
-    if (moves || !fc_method_formula(&scene, &response, method, h, start, &result)) {
-        const FcSolverOptions options = solver_options(v, &scene, h, bristle);
-        if (!fc_method_step(&scene, method, contact->cvode, &options, h, start, &result, message)) {
+    if (has_body || moves || !fc_method_formula(&scene, &response, method, h, start, &result)) {
+        const FcSolverOptions options = solver_options(v, seen, h, bristle);
+        if (has_body
+                ? !fc_body_step(&scene, contact->cvode[1], &options, h, start, &body, &result, message)
+                : !fc_method_step(&scene, method, contact->cvode[0], &options, h, start, &result, message)) {
             return false;
         }
     }
     result.heat += heat;
-    add_damping(&scene, h, start, &result);
+    if (!has_body) {
+        add_damping(&scene, h, start, &result);
+    }
 
     // Evaluated at the phase of t + h, which is also that of the next step. A phase carried on from the
     // step's start would lose digits with every period.
     const double time_rest = rounding_of_sum(t, h);
-    FcScene moved;
-    const bool ends_elsewhere = moves || inputs_move(before->next_rate); // also one that the law does not use
+    // also one that the law does not use
+    const bool ends_elsewhere = has_body || moves || inputs_move(before->next_rate);
     if (ends_elsewhere) {
         scene_from(contact, t + h, time_rest, before->next_rate, h, &moved);
+        if (has_body) {
+            moved = fc_body_scene(&moved, &body, fc_bristle_of(&result));
+        }
         response = fc_scene_contact(&moved, 0.0);
     }
     const FcScene* end = ends_elsewhere ? &moved : &scene;
     FcVector force;
     const bool slips = result.on_bound && !fc_scene_is_loose(end);
     const FcBristle reached = slips ? fc_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
-    if (!find_force(end, &response, reached, &force, message)) {
+    if (!find_force(end, &response, &body, reached, &force, message)) {
         return false;
     }
     const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : force;
     if (!isfinite(mean.x) || !isfinite(mean.y) || !isfinite(result.delta) || !isfinite(result.delta_y) ||
-        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat)) {
+        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat) || !isfinite(body.v + body.x)) {
         const Fastest of = fastest(&scene.drive);
         return fc_message_set(
             message,
@@ -602,6 +707,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcPast past = fc_is_bounded(&v->friction) ? fc_past(end) : (FcPast){.sigma = 0.0};
     commit(&contact->state, h, &result, reached, &past);
     fc_set_outputs(&contact->state.variables, force, mean, &response);
+    contact->state.variables.body.v = body.v;
+    contact->state.variables.body.x = body.x;
     contact->state.time = t + h;
     contact->state.time_rest = time_rest;
     return true;
@@ -611,4 +718,13 @@ bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h
     const FcVibration* vibration = &contact->state.variables.vibration;
     return (vibration->V_1 != 0.0 || vibration->V_2 != 0.0 || vibration->a_d != 0.0) &&
            h * vibration->f > 0.5;
+}
+
+double fc_friction_contact_rings(const FcFrictionContact* contact, double h) {
+    const FcVariables* v = &contact->state.variables;
+    const FcVibration* vibration = &v->vibration;
+    const bool is_free = v->friction.model != FC_COULOMB && v->friction.sigma_1 == 0.0 &&
+                         vibration->V_1 == 0.0 && vibration->a_d == 0.0 && v->body.m > 0.0;
+    const double periods = is_free ? h * sqrt(v->sigma / v->body.m) / FC_TWO_PI : 0.0;
+    return periods > 1.0 ? periods : 0.0;
 }

@@ -11,6 +11,7 @@
 #include "message.h"
 #include "model/regime.h"
 #include "model/scene.h"
+#include "solver/body.h"
 #include "solver/jump.h"
 
 // The values of modelDescription.xml.
@@ -50,9 +51,25 @@ typedef struct {
     double delta_y;     // m    output, the state across
     double delta_y_0;   // m
     double time;        // s, the independent variable, which FcFrictionState holds: 0 here
+    struct {
+        double m;   // kg, 0 without a mass
+        double F;   // N    input
+        double v;   // m/s  output, a state
+        double x;   // m    output, a state
+        double v_0; // m/s
+        double x_0; // m
+    } body;
 } FcVariables;
 
-typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_V_Y, FC_INPUT_COUNT } FcInput;
+typedef enum {
+    FC_INPUT_V,
+    FC_INPUT_D,
+    FC_INPUT_E,
+    FC_INPUT_LOAD,
+    FC_INPUT_V_Y,
+    FC_INPUT_F,
+    FC_INPUT_COUNT
+} FcInput;
 double* fc_input_of(FcVariables* v, FcInput input);
 
 // The state of model exchange besides the variables (hybrid.h).
@@ -87,7 +104,7 @@ typedef struct {
 
 typedef struct {
     FcFrictionState state;
-    struct FcCvode* cvode; // only when solver.method = cvode
+    struct FcCvode* cvode[2]; // without and with a body, where they are used
     // The contact at the modulus and the parameters it was last computed for.
     FcContactAtModulus at_E;
     FcContactParameters at_E_of;
@@ -99,9 +116,8 @@ typedef struct {
 // Call after all start values and parameters are set. Checks their combination, starts the state at time
 // start [s] from delta_0 or in the settled state, and computes the outputs.
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message);
-// Allocates the memory of the method (one FcMethod) for stepping, unless it exists. A saved state does not
-// contain it.
-bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message);
+// Allocates the memory for stepping these variables, unless it exists. A saved state does not contain it.
+bool fc_friction_contact_prepare(FcFrictionContact* contact, const FcVariables* of, FcMessage* message);
 void fc_friction_contact_free(FcFrictionContact* contact); // frees the memory of the two above
 
 // Advances from t to t + h [s]. Refuses an h below 0 or subnormal, and an end that is not finite. The inputs
@@ -119,7 +135,8 @@ FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact);
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene);
 
 // The scene that begins at the present time, with the inputs moving at the rates of the last step or, if new
-// ones have been set, of the next. It points into the contact.
+// ones have been set, of the next. V contains the velocity of the body, and with a bristle the rate of V its
+// acceleration. It points into the contact.
 FcScene fc_friction_contact_scene(FcFrictionContact* contact);
 
 // The scene at the present time with the inputs moving at these rates [1/s times their units], or held if
@@ -132,6 +149,15 @@ void fc_set_outputs(FcVariables* v, FcVector force, FcVector mean, const FcConta
 // Whether the present inputs and parameters are a valid combination.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
 
+// The body at the present time, with the force moving as the inputs of the scene above.
+FcBody fc_friction_contact_body(const FcFrictionContact* contact);
+
+// Whether a mass sticks by Coulomb's law in that scene, so that F_t = body.F + m V'.
+bool fc_friction_contact_sticks(FcFrictionContact* contact);
+
+// Time derivative of (F_t, F_y) [N/s] in that scene.
+FcVector fc_friction_contact_force_rate(FcFrictionContact* contact);
+
 // Recomputes the rates of the states, der, for the present outputs and any law of friction.
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message);
 
@@ -141,5 +167,9 @@ bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* messa
 // Whether the vibration is on and a step of h [s] exceeds half a period. F_t is then one sample, and F_t_mean
 // is the output to use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);
+
+// The periods [1] in a step of h [s] in which a stuck mass rings without damping and vibration, beyond 1; else 0.
+// F_t is then a sample, too.
+double fc_friction_contact_rings(const FcFrictionContact* contact, double h);
 
 #endif

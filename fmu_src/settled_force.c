@@ -34,6 +34,8 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
     FcFrictionState* state = &held.state;
     state->variables.delta = 0.0;
     state->variables.delta_y = 0.0;
+    state->variables.V += state->variables.body.v; // at which the mass moves, as if it went on
+    state->variables.body.m = 0.0;
     state->time = 0.0;
     state->time_rest = 0.0;
     state->slips = 0;
@@ -135,6 +137,7 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, s
         return PART_OF_SCALE;
     case offsetof(FcVariables, load):
         return -PART_OF_SCALE * v->load;
+    case offsetof(FcVariables, body.F):
     case offsetof(FcVariables, friction.sigma_1):
     case offsetof(FcVariables, friction.sigma_2):
         return 0.0;

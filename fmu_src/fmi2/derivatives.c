@@ -92,8 +92,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (!fc_instance_refresh_outputs(instance, &message)) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    const FcScene scene = fc_friction_contact_scene(&instance->contact);
-    const FcVector rate = fc_force_rate(&scene, fc_friction_contact_reached(&instance->contact, &scene));
+    const FcVector rate = fc_friction_contact_force_rate(&instance->contact);
     if (!isfinite(rate.x) || !isfinite(rate.y)) {
         return fc_refuse(instance, call, "the time derivative of %s is beyond the largest number",
                          isfinite(rate.x) ? "F_y" : "F_t");

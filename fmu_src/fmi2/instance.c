@@ -38,7 +38,7 @@ void fc_instance_set_start_values(FcInstance* instance) {
     memset(&instance->contact.state, 0, sizeof instance->contact.state);
     instance->experiment = (FcExperiment){
         .interface = instance->experiment.interface, .mode = FC_INSTANTIATED, .outputs_stale = 1};
-    instance->undersampling_told = false;
+    instance->told = 0;
     FcVariables* variables = &instance->contact.state.variables;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
@@ -62,7 +62,7 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
     }
     FcFrictionContact* contact = &instance->contact;
     if (instance->experiment.mode == FC_INITIALIZATION_MODE) {
-        FcFrictionContact trial = {.state = contact->state, .cvode = NULL};
+        FcFrictionContact trial = {.state = contact->state, .cvode = {NULL}};
         if (!fc_friction_contact_initialize(&trial, instance->experiment.start_time, message)) {
             return false;
         }

@@ -49,6 +49,8 @@ static void drop_stale_outputs(const FcInstance* instance, FcSavedState* saved) 
         variables->delta_y = 0.0;
         variables->W_f = 0.0;
         variables->Q_f = 0.0;
+        variables->body.v = 0.0;
+        variables->body.x = 0.0;
     }
 }
 
@@ -88,7 +90,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate) {
     }
     FcMessage message;
     if (saved->experiment.mode == FC_STEP_COMPLETE &&
-        !fc_friction_contact_prepare(&instance->contact, saved->friction.variables.solver.method, &message)) {
+        !fc_friction_contact_prepare(&instance->contact, &saved->friction.variables, &message)) {
         return fc_refuse(instance, FC_CALL_SET_FMU_STATE, "%s", message.text);
     }
     instance->contact.state = saved->friction;

@@ -23,7 +23,7 @@
 
 // Counted from 1. It increases with every change of the layout above, except of the variables, whose change
 // alters the guid.
-enum { LAYOUT_VERSION = 5 };
+enum { LAYOUT_VERSION = 6 };
 
 // Bytes of the parts above: the length of magic, of a guid in braces, of a 64-bit hash.
 enum { MAGIC_SIZE = 8, GUID_SIZE = 38, HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE, HASH_SIZE = 8 };
@@ -265,7 +265,7 @@ static bool goes_together(const FcSavedState* saved, FcMessage* message) {
     if (saved->experiment.outputs_stale || saved->experiment.mode == FC_INSTANTIATED) {
         return true;
     }
-    FcFrictionContact contact = {.state = saved->friction, .cvode = NULL};
+    FcFrictionContact contact = {.state = saved->friction, .cvode = {NULL}};
     return fc_friction_contact_check(&contact, message);
 }
 

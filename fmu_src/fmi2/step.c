@@ -67,13 +67,41 @@ static bool check_moving_inputs(const FcInstance* instance, double h) {
     return true;
 }
 
-static void tell_undersampling(FcInstance* instance, double h) {
+// The warnings that appear once.
+enum { UNDERSAMPLING = 1, RINGING = 2, UNUSED_FORCE = 4 };
+
+static void tell_undersampling(const FcInstance* instance, double h) {
     const double f = instance->contact.state.variables.vibration.f;
     fc_log(instance, FC_CALL_DO_STEP, fmi2Warning, FC_LOG_STATUS_WARNING,
            "the step of %s exceeds half a period of the vibration (vibration.f = %s): F_t is then one sample "
            "in a period; connect F_t_mean instead. This warning appears once.",
            fc_quantity_text(h, "s").text, fc_quantity_text(f, "Hz").text);
-    instance->undersampling_told = true;
+}
+
+static void tell_ringing(const FcInstance* instance, double h) {
+    const FcVariables* v = &instance->contact.state.variables;
+    fc_log(instance, FC_CALL_DO_STEP, fmi2Warning, FC_LOG_STATUS_WARNING,
+           "the mass body.m = %s rings undamped on sigma = %s, %.3g periods in the step of %s: F_t is then one "
+           "sample in many; connect F_t_mean, send derivatives of the inputs, or set friction.sigma_1 to 2 zeta "
+           "sqrt(sigma m), %.3g N.s/m for zeta = 0.2. This warning appears once.",
+           fc_quantity_text(v->body.m, "kg").text, fc_quantity_text(v->sigma, "N/m").text,
+           fc_friction_contact_rings(&instance->contact, h), fc_quantity_text(h, "s").text,
+           0.4 * sqrt(v->sigma * v->body.m));
+}
+
+static void tell_unused_force(const FcInstance* instance, double h) {
+    (void)h;
+    fc_log(instance, FC_CALL_DO_STEP, fmi2Warning, FC_LOG_STATUS_WARNING,
+           "body.F = %s has no effect: body.m = 0. This warning appears once.",
+           fc_quantity_text(instance->contact.state.variables.body.F, "N").text);
+}
+
+static void tell_once(FcInstance* instance, unsigned what, bool is_so, void (*tell)(const FcInstance*, double),
+                      double h) {
+    if (is_so && !(instance->told & what)) {
+        tell(instance, h);
+        instance->told |= what;
+    }
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
@@ -90,10 +118,12 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
         return fc_refuse(instance, FC_CALL_DO_STEP, "%s", message.text);
     }
     instance->experiment.outputs_stale = 0;
-    if (!instance->undersampling_told &&
-        fc_friction_contact_undersamples(&instance->contact, communicationStepSize)) {
-        tell_undersampling(instance, communicationStepSize);
-    }
+    const FcFrictionContact* contact = &instance->contact;
+    const FcVariables* v = &contact->state.variables;
+    const double h = communicationStepSize;
+    tell_once(instance, UNDERSAMPLING, fc_friction_contact_undersamples(contact, h), tell_undersampling, h);
+    tell_once(instance, RINGING, fc_friction_contact_rings(contact, h) > 0.0, tell_ringing, h);
+    tell_once(instance, UNUSED_FORCE, v->body.m == 0.0 && v->body.F != 0.0, tell_unused_force, h);
     return fmi2OK;
 }
 

@@ -107,7 +107,8 @@ static bool is_computed(const FcVariableInfo* info) {
 static bool have_equal_causes(const FcVariables* a, const FcVariables* b) {
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
-        if (!is_computed(info) && fc_variable_value(a, info) != fc_variable_value(b, info)) {
+        const bool counts = !is_computed(info) || info->offset == offsetof(FcVariables, body.v);
+        if (counts && fc_variable_value(a, info) != fc_variable_value(b, info)) {
             return false;
         }
     }

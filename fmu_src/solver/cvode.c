@@ -5,10 +5,13 @@
 // over a kink, and no history outlives a step. The errors have absolute bounds, because an error of the
 // deflection is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0: steps
 // shrink with |V| so that none passes it unseen.
+//
+// With a mass (solver/body.h) V is w. The states are then those of the bristle, the impulse of its force, and the part of
+// the position that F_t makes; v follows from them. Reversals of w are events.
 #include <stdio.h>
 
 #include "model/extremes.h"
-#include "solver/method.h"
+#include "solver/body.h"
 
 // FC_NO_CVODE leaves it out of any build: SUNDIALS takes memory from the heap, which some targets do not have.
 #if defined(FC_WITH_SUNDIALS) && !defined(FC_NO_CVODE)
@@ -21,7 +24,9 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include "model/constants.h"
 #include "model/regime.h"
+#include "model/root.h"
 #include "solver/pieces.h"
 
 // Each is chosen empirically: half of it costs steps, twice of it doubles the error that passes
@@ -34,14 +39,11 @@
 // steps approach the peak geometrically, and on the peak by this part of V_S.
 #define STRIBECK_STEP 0.25
 
-// The states: the deflection, and the integrals of FcStepResult.
-enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, STATES };
+// The states: the deflection, and the integrals of FcStepResult; with a mass what F_t adds to its position.
+enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, POSITION, MOST_STATES };
 
-static double* state(FcStepResult* of, int k) {
-    double* const all[STATES] = {&of->delta, &of->delta_y, &of->impulse, &of->impulse_y,
-                                 &of->work,  &of->heat,    &of->drag};
-    return all[k];
-}
+// Indicators of events: those of a regime; with a mass w, and the slope of F_t over the rate of w.
+enum { OF_REGIME, REVERSAL = 2, JUMP, MOST_INDICATORS };
 
 struct FcCvode {
     SUNContext context;
@@ -50,6 +52,7 @@ struct FcCvode {
     SUNMatrix matrix;
     SUNLinearSolver linear_solver;
     void* cvode;
+    int states; // their number
     // The present regime, for the callbacks.
     const FcScene* scene; // without damping
     double start;         // s, local time at which the regime starts; CVODE's time is 0 there
@@ -57,7 +60,18 @@ struct FcCvode {
     int slips;
     double evaluations; // of the motion
     char reason[160];   // CVODE's last error message
+    // The mass at the start of the step, the damping, and the largest acceleration [m/s2].
+    FcBody body;
+    const FcFriction* damped;
+    double delta_0, impulse_0, position;
+    double acceleration;
 };
+
+static double* state(FcCvode* solver, FcStepResult* of, int k) {
+    double* const all[] = {&of->delta, &of->delta_y, &of->impulse, &of->impulse_y,
+                           &of->work,  &of->heat,    &of->drag,    &solver->position};
+    return all[k];
+}
 
 // CVODE refuses 0, and squares what an error is over it.
 static const double LEAST_ALLOWED = 1e-100;
@@ -67,9 +81,36 @@ static const double SHORTEST = 1e-50;
 
 // The largest number of evaluations in a communication step, a second of computing: each makes a scene.
 static const double MOST_EVALUATIONS = 2e5;
+static const double MOST_EVALUATIONS_OF_BODY = 5e5;
 
-static FcScene scene_at(const FcCvode* solver, double tau) {
-    return fc_scene_from(solver->scene, solver->start + tau);
+static bool has_body(const FcCvode* solver) { return solver->states > POSITION; }
+
+// The impulse [N s] of F_t since the start of the step, at the time t [s].
+static double impulse_of(const FcCvode* solver, double t, double delta, double impulse, double position) {
+    const FcBody* body = &solver->body;
+    double of = impulse - solver->impulse_0 + solver->damped->sigma_1 * (delta - solver->delta_0);
+    if (solver->damped->sigma_2 != 0.0) {
+        of += solver->damped->sigma_2 * (fc_drive_displacement(&solver->scene->drive, 0.0, t) + body->v * t +
+                                         fc_body_pushed_twice(body, t) / body->m + position);
+    }
+    return of;
+}
+
+static double velocity_of(const FcCvode* solver, double t, double impulse) {
+    return solver->body.v + (fc_body_pushed(&solver->body, t) - impulse) / solver->body.m;
+}
+
+// The scene in which the bristle moves; *impulse [N s] becomes that of F_t.
+static FcScene scene_at(const FcCvode* solver, double tau, N_Vector y, double* impulse) {
+    const double t = solver->start + tau;
+    FcScene scene = fc_scene_from(solver->scene, t);
+    *impulse = 0.0;
+    if (has_body(solver)) {
+        *impulse =
+            impulse_of(solver, t, NV_Ith_S(y, DELTA), NV_Ith_S(y, IMPULSE), NV_Ith_S(y, POSITION));
+        scene.drive.V.value += velocity_of(solver, t, *impulse);
+    }
+    return scene;
 }
 
 static FcBristle bristle_of(const FcCvode* solver, N_Vector y) {
@@ -77,7 +118,7 @@ static FcBristle bristle_of(const FcCvode* solver, N_Vector y) {
 }
 
 // Of a motion, or of its derivative by the deflection.
-static void set_rates(const FcScene* now, const FcMotion* motion, double rate[STATES]) {
+static void set_rates(const FcScene* now, const FcMotion* motion, double rate[MOST_STATES]) {
     rate[DELTA] = motion->rates.delta;
     rate[DELTA_Y] = motion->rates.delta_y;
     rate[IMPULSE] = motion->force.x;
@@ -88,20 +129,76 @@ static void set_rates(const FcScene* now, const FcMotion* motion, double rate[ST
                  motion->rates.delta_y * fc_drive_V_y(&now->drive, 0.0);
 }
 
+// The bound of a bristle that slips moves with w.
+static void add_acceleration(const FcCvode* solver, double t, FcRegime regime, FcBristle bristle,
+                             FcScene* scene) {
+    if (has_body(solver) && regime != FC_FREE && fc_has_static_friction(scene->friction)) {
+        FcScene damped = *scene;
+        damped.friction = solver->damped;
+        const double F = solver->body.F.value + solver->body.F.rate * t;
+        scene->drive.V.rate += fc_body_acceleration(&damped, regime, bristle, &solver->body, F);
+    }
+}
+
+// m and the slope of F_t over the rate of w, of m, above 0 while w follows smoothly.
+static double inertia_of(const FcCvode* solver, FcRegime regime, FcBristle bristle, const FcScene* scene) {
+    FcScene damped = *scene;
+    damped.friction = solver->damped;
+    return fc_body_inertia(&damped, regime, bristle, &solver->body) / solver->body.m - FC_LEAST_INERTIA;
+}
+
 static int right_hand_side(realtype tau, N_Vector y, N_Vector rates, void* user) {
     FcCvode* solver = user;
-    const FcScene now = scene_at(solver, tau);
+    double impulse;
+    FcScene now = scene_at(solver, tau, y, &impulse);
+    add_acceleration(solver, solver->start + tau, solver->regime, bristle_of(solver, y), &now);
     const FcMotion motion = fc_motion(&now, solver->regime, bristle_of(solver, y));
     solver->evaluations += 1.0;
-    set_rates(&now, &motion, NV_DATA_S(rates));
+    double* rate = NV_DATA_S(rates);
+    set_rates(&now, &motion, rate);
+    if (has_body(solver)) {
+        const double w = fc_drive_V(&now.drive, 0.0);
+        const double damping = (solver->damped->sigma_1 * rate[DELTA] + solver->damped->sigma_2 * w) * w;
+        rate[WORK] += damping;
+        rate[HEAT] += damping;
+        rate[POSITION] = -impulse / solver->body.m;
+    }
     return 0;
+}
+
+// By delta, the impulse and the position, on each of which w depends. The rate of a bound that follows w is left out: it
+// moves delta alone, on which nothing depends then but by sigma_1.
+static void jacobian_of_body(const FcCvode* solver, const FcScene* now, N_Vector y, SUNMatrix J) {
+    const FcFriction* damped = solver->damped;
+    const double m = solver->body.m;
+    const double w = fc_drive_V(&now->drive, 0.0);
+    const FcBristle bristle = bristle_of(solver, y);
+    const double delta_rate = fc_motion(now, solver->regime, bristle).rates.delta;
+    const int of[] = {DELTA, IMPULSE, POSITION};
+    const FcDirection along[] = {
+        {.delta = 1.0, .V = -damped->sigma_1 / m}, {.V = -1.0 / m}, {.V = -damped->sigma_2 / m}};
+    for (int k = 0; k < 3; k++) {
+        const FcMotion by = fc_motion_along(now, solver->regime, bristle, &along[k]);
+        double* column = SM_COLUMN_D(J, of[k]);
+        set_rates(now, &by, column);
+        const double damping =
+            damped->sigma_1 * (by.rates.delta * w + delta_rate * along[k].V) + 2.0 * damped->sigma_2 * w * along[k].V;
+        column[WORK] += damping;
+        column[HEAT] += damping;
+        column[POSITION] = along[k].V;
+    }
 }
 
 static int jacobian(realtype tau, N_Vector y, N_Vector rates, SUNMatrix J, void* user, N_Vector t1,
                     N_Vector t2, N_Vector t3) {
     (void)rates, (void)t1, (void)t2, (void)t3;
     const FcCvode* solver = user;
-    const FcScene now = scene_at(solver, tau);
+    double impulse;
+    const FcScene now = scene_at(solver, tau, y, &impulse);
+    if (has_body(solver)) {
+        jacobian_of_body(solver, &now, y, J);
+        return 0;
+    }
     const FcDirection along[] = {{.delta = 1.0}, {.delta_y = 1.0}};
     for (int k = DELTA; k <= DELTA_Y; k++) {
         const FcMotion by = fc_motion_along(&now, solver->regime, bristle_of(solver, y), &along[k]);
@@ -112,8 +209,15 @@ static int jacobian(realtype tau, N_Vector y, N_Vector rates, SUNMatrix J, void*
 
 static int indicators(realtype tau, N_Vector y, realtype* z, void* user) {
     const FcCvode* solver = user;
-    const FcScene now = scene_at(solver, tau);
-    fc_regime_indicators(&now, solver->regime, bristle_of(solver, y), z);
+    double impulse;
+    FcScene now = scene_at(solver, tau, y, &impulse);
+    const FcBristle bristle = bristle_of(solver, y);
+    if (has_body(solver)) {
+        z[REVERSAL] = solver->scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : fc_drive_V(&now.drive, 0.0);
+        z[JUMP] = inertia_of(solver, solver->regime, bristle, &now);
+        add_acceleration(solver, solver->start + tau, solver->regime, bristle, &now);
+    }
+    fc_regime_indicators(&now, solver->regime, bristle, &z[OF_REGIME]);
     return 0;
 }
 
@@ -129,9 +233,9 @@ static bool set_up(FcCvode* solver) {
     if (SUNContext_Create(NULL, &solver->context) != 0) {
         return false;
     }
-    solver->y = N_VNew_Serial(STATES, solver->context);
-    solver->allowed = N_VNew_Serial(STATES, solver->context);
-    solver->matrix = SUNDenseMatrix(STATES, STATES, solver->context);
+    solver->y = N_VNew_Serial(solver->states, solver->context);
+    solver->allowed = N_VNew_Serial(solver->states, solver->context);
+    solver->matrix = SUNDenseMatrix(solver->states, solver->states, solver->context);
     if (!solver->y || !solver->allowed || !solver->matrix) {
         return false;
     }
@@ -144,18 +248,21 @@ static bool set_up(FcCvode* solver) {
     return CVodeSetErrHandlerFn(cvode, keep_reason, solver) == CV_SUCCESS &&
            CVodeInit(cvode, right_hand_side, 0.0, solver->y) == CV_SUCCESS &&
            CVodeSetUserData(cvode, solver) == CV_SUCCESS &&
-           CVodeRootInit(cvode, 2, indicators) == CV_SUCCESS &&
+           CVodeRootInit(cvode, has_body(solver) ? MOST_INDICATORS : REVERSAL, indicators) == CV_SUCCESS &&
            CVodeSetLinearSolver(cvode, solver->linear_solver, solver->matrix) == CVLS_SUCCESS &&
            CVodeSetJacFn(cvode, jacobian) == CVLS_SUCCESS;
 }
 
-FcCvode* fc_cvode_new(FcMessage* message) {
+FcCvode* fc_cvode_new(bool with_body, FcMessage* message) {
     FcCvode* solver = calloc(1, sizeof *solver);
+    if (solver) {
+        solver->states = with_body ? MOST_STATES : POSITION;
+    }
     if (solver && set_up(solver)) {
         return solver;
     }
     fc_cvode_free(solver);
-    fc_message_set(message, "solver.method = cvode: no memory for CVODE");
+    fc_message_set(message, "no memory for CVODE, which solver.method = cvode and body.m above 0 use");
     return NULL;
 }
 
@@ -181,46 +288,123 @@ static double periods_of(const FcDrive* drive, double h) {
 // up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma.
 static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h) {
     const double stiffness = fc_scene_largest_stiffness(scene, h);
-    const double path = fc_drive_largest_speed(&scene->drive, h) * h;
+    double speed = fc_drive_largest_speed(&scene->drive, h);
+    if (has_body(solver)) { // at the least, ringing
+        speed += fabs(solver->body.v) + options->force / sqrt(stiffness * solver->body.m);
+    }
+    const double path = speed * h;
     const double forgets =
         scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
     const double periods = fc_most(1.0, periods_of(&scene->drive, h) / fc_most(1.0, forgets));
     const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
-    const double of[STATES] = {delta,        delta,        force * h,       force * h,
-                               force * path, force * path, delta * path / h};
-    for (int k = 0; k < STATES; k++) {
+    const double moment = has_body(solver) ? fc_least(h, sqrt(solver->body.m / stiffness)) : h; // s
+    const double of[] = {delta,        delta,        force * moment,    force * h,
+                         force * path, force * path, delta * path / h, force * moment * h / solver->body.m};
+    for (int k = 0; k < solver->states; k++) {
         NV_Ith_S(solver->allowed, k) = fc_most(of[k], LEAST_ALLOWED);
     }
 }
 
 // Longest step [s] from the time t [s] that can't go over the peak of a Stribeck curve; INFINITY without one.
-static double stribeck_step(const FcScene* scene, double t) {
-    if (!fc_has_stribeck_curve(scene->friction)) {
+static double stribeck_step(const FcCvode* solver, double tau) {
+    if (!fc_has_stribeck_curve(solver->scene->friction)) {
         return INFINITY;
     }
+    const FcScene* scene = solver->scene;
     const FcDrive* drive = &scene->drive;
     const FcVibration* vibration = &drive->vibration;
-    const double rate = hypot(drive->V.rate, drive->V_y.rate) +
-                        drive->omega * hypot(vibration->V_1, vibration->V_2); // at most
-    const double speed = hypot(fc_drive_V(drive, t), fc_drive_V_y(drive, t));
+    double rate = hypot(drive->V.rate, drive->V_y.rate) +
+                  drive->omega * hypot(vibration->V_1, vibration->V_2); // at most
+    const double t = solver->start + tau;
+    double speed = hypot(fc_drive_V(drive, t), fc_drive_V_y(drive, t));
+    if (has_body(solver)) {
+        double impulse;
+        const FcScene now = scene_at(solver, tau, solver->y, &impulse);
+        speed = fabs(fc_drive_V(&now.drive, 0.0));
+        rate += solver->acceleration;
+    }
     const double change = fc_most(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
     return rate > 0.0 ? change / rate : INFINITY;
+}
+
+// A bristle that drops from `first` [m], and by its damper moves the mass: w changes by per_delta [1/s] over the drop.
+typedef struct {
+    FcScene scene;
+    double V, first, per_delta;
+} Drop;
+
+// The kinetic bound less the deflection [m], for fc_root_between.
+static double inside_bound(void* context, double size) {
+    Drop* of = context;
+    of->scene.drive.V.value = of->V + of->per_delta * (of->first - size);
+    const FcCoefficients at = fc_scene_coefficients(&of->scene, 0.0);
+    return at.limit / at.sigma - size;
+}
+
+// A bristle with a damper breaks away, or jumps along the kinetic bound: delta falls to the first place on D(w), while
+// m w + sigma_1 delta stays.
+static void drop(const FcCvode* solver, const FcScene* scene, FcStepResult* now) {
+    enum { SAMPLES = 64 }; // half of them pass over a smaller jump
+    const double side = fc_side(fc_bristle_of(now));
+    const double sigma_1 = solver->damped->sigma_1;
+    Drop of = {*scene, scene->drive.V.value, fabs(now->delta), side * sigma_1 / solver->body.m};
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double fall = of.first - at.limit / fc_stribeck(scene->friction, at.V) / at.sigma; // to that of a fast slip
+    double outside = 0.0;
+    double evaluations = 0.0;
+    for (int k = 0; k <= SAMPLES; k++) {
+        const double size = of.first - fall * k / SAMPLES;
+        const double value = inside_bound(&of, size);
+        if (value < 0.0) {
+            outside = size;
+        } else if (outside != 0.0) {
+            const double at_outside = inside_bound(&of, outside);
+            const double end = fc_root_between(inside_bound, &of, size, value, outside, at_outside, 0.0, &evaluations);
+            const double w = fc_drive_V(&scene->drive, 0.0) + 0.5 * of.per_delta * (of.first - end);
+            const double damping = -side * sigma_1 * (of.first - end) * w;
+            now->work += damping;
+            now->heat += damping + 0.5 * at.sigma * (of.first - end) * (of.first + end);
+            now->delta = side * end;
+            now->slips = (int)side;
+            return;
+        }
+    }
+}
+
+static void put(FcCvode* solver, FcStepResult* now) {
+    for (int k = 0; k < solver->states; k++) {
+        NV_Ith_S(solver->y, k) = *state(solver, now, k);
+    }
+}
+
+// The scene at the start of a regime.
+static FcScene scene_with(FcCvode* solver, FcStepResult* now) {
+    put(solver, now);
+    double impulse;
+    FcScene scene = scene_at(solver, 0.0, solver->y, &impulse);
+    add_acceleration(solver, solver->start, (FcRegime)fc_side(fc_bristle_of(now)), fc_bristle_of(now), &scene);
+    return scene;
 }
 
 // Begins the regime that the bristle has at the time t [s].
 static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     solver->start = t;
-    const FcScene scene = scene_at(solver, 0.0);
+    FcScene scene = scene_with(solver, now);
+    if (has_body(solver) && fc_has_static_friction(scene.friction) && solver->damped->sigma_1 != 0.0) {
+        const bool breaks_away = now->slips == 0 && fc_reach(&scene, fc_bristle_of(now)).slips != 0;
+        if (breaks_away || inertia_of(solver, solver->regime, fc_bristle_of(now), &scene) <= 0.0) {
+            drop(solver, &scene, now);
+            scene = scene_with(solver, now);
+        }
+    }
     fc_take_onto_bound(&scene, now);
     const bool slips = now->slips != 0 && fc_push(&scene, fc_bristle_of(now)) > 0.0;
     now->slips = slips ? now->slips : 0; // at the event of a push of 0
     solver->slips = now->slips;
     solver->regime = fc_regime(&scene, fc_bristle_of(now));
     now->on_bound = solver->regime != FC_FREE;
-    for (int k = 0; k < STATES; k++) {
-        NV_Ith_S(solver->y, k) = *state(now, k);
-    }
+    put(solver, now);
 }
 
 // Integrates from the start of the regime up to its end, or for duration [s]; returns the time taken [s], NaN
@@ -237,14 +421,15 @@ static double integrate_regime(FcCvode* solver, double duration) {
     double tau = 0.0;
     int flag = CV_SUCCESS;
     while (tau < duration && flag != CV_ROOT_RETURN) {
-        const double step = stribeck_step(solver->scene, solver->start + tau);
+        const double step = stribeck_step(solver, tau);
         CVodeSetStopTime(cvode, fc_least(tau + step, duration));
         flag = CVode(cvode, duration, solver->y, &tau, CV_ONE_STEP);
         solver->evaluations += 1.0; // of the indicators
-        if (flag >= 0 && solver->evaluations > MOST_EVALUATIONS) {
+        const double most = has_body(solver) ? MOST_EVALUATIONS_OF_BODY : MOST_EVALUATIONS;
+        if (flag >= 0 && solver->evaluations > most) {
             snprintf(solver->reason, sizeof solver->reason,
-                     "it needs more than %.0e evaluations; use smaller steps or collocation",
-                     MOST_EVALUATIONS);
+                     "it needs more than %.0e evaluations; use smaller steps%s", most,
+                     has_body(solver) ? "" : " or collocation");
             flag = CV_TOO_MUCH_WORK;
         }
         if (flag < 0) {
@@ -254,35 +439,28 @@ static double integrate_regime(FcCvode* solver, double duration) {
     return tau;
 }
 
-bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
-                   FcStepResult* result, FcMessage* message) {
-    assert(solver && h >= 0.0 && options->tolerance > 0.0);
-    if (h > 0.0 && h < SHORTEST) {
-        return fc_message_set(
-            message,
-            "solver.method = cvode: the communication step of %.5g s is below %.0e s; use collocation", h,
-            SHORTEST);
-    }
+// Takes *result over [0, h] of the scene without damping. False with solver->reason.
+static bool integrate(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                      double* t, FcStepResult* result) {
     FcFriction friction = *scene->friction; // the damping is not a part of the result
     friction.sigma_1 = friction.sigma_2 = 0.0;
     FcScene undamped = *scene;
     undamped.friction = &friction;
     solver->scene = &undamped;
     solver->evaluations = 0.0;
+    solver->regime = FC_FREE;
     set_allowed(solver, scene, options, h);
     FcStepResult now = *result;
-    for (double t = 0.0; t < h;) {
-        begin_regime(solver, t, &now);
-        const double stop = fc_drive_next_event(&scene->drive, t, h).time;
-        const double taken = integrate_regime(solver, stop - t);
+    for (*t = 0.0; *t < h;) {
+        begin_regime(solver, *t, &now);
+        const double stop = has_body(solver) ? h : fc_drive_next_event(&scene->drive, *t, h).time;
+        const double taken = integrate_regime(solver, stop - *t);
         if (!isfinite(taken)) {
-            return fc_message_set(
-                message, "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s", t,
-                h, solver->reason);
+            return false;
         }
-        t = taken < stop - t ? t + taken : stop;
-        for (int k = 0; k < STATES; k++) {
-            *state(&now, k) = NV_Ith_S(solver->y, k);
+        *t = taken < stop - *t ? *t + taken : stop;
+        for (int k = 0; k < solver->states; k++) {
+            *state(solver, &now, k) = NV_Ith_S(solver->y, k);
         }
     }
     now.evaluations += solver->evaluations;
@@ -290,12 +468,57 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
     return true;
 }
 
+bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                   FcStepResult* result, FcMessage* message) {
+    assert(solver && !has_body(solver) && h >= 0.0 && options->tolerance > 0.0);
+    if (h > 0.0 && h < SHORTEST) {
+        return fc_message_set(
+            message,
+            "solver.method = cvode: the communication step of %.5g s is below %.0e s; use collocation", h,
+            SHORTEST);
+    }
+    double t;
+    return integrate(solver, scene, options, h, &t, result) ||
+           fc_message_set(message,
+                          "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s", t,
+                          h, solver->reason);
+}
+
+bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                        FcBody* body, FcStepResult* result, FcMessage* message) {
+    assert(solver && has_body(solver) && h >= 0.0 && options->tolerance > 0.0);
+    const double F = fc_most(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
+    solver->body = *body;
+    solver->damped = scene->friction;
+    solver->delta_0 = result->delta;
+    solver->impulse_0 = result->impulse;
+    solver->position = 0.0;
+    solver->acceleration = (F + options->largest) / body->m;
+    double t;
+    if (h > 0.0 && (h < SHORTEST || !integrate(solver, scene, options, h, &t, result))) {
+        const double stiffness = fc_scene_largest_stiffness(scene, h);
+        const double omega = sqrt(stiffness / body->m);
+        return fc_message_set(message,
+                              "body.m = %.9g kg: the step of %.5g s is refused: %s. A stuck mass rings at %.4g kHz, %.4g "
+                              "cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = Coulomb",
+                              body->m, h, h < SHORTEST ? "it is too short" : solver->reason,
+                              1e-3 * omega / FC_TWO_PI, omega * h / FC_TWO_PI, 0.4 * body->m * omega);
+    }
+    const double impulse = impulse_of(solver, h, result->delta, result->impulse, solver->position);
+    result->impulse = solver->impulse_0 + impulse;
+    body->x += body->v * h + fc_body_pushed_twice(body, h) / body->m + solver->position;
+    fc_body_move(body, h, impulse);
+    return true;
+}
+
 #else
 
-FcCvode* fc_cvode_new(FcMessage* message) {
+FcCvode* fc_cvode_new(bool with_body, FcMessage* message) {
     fc_message_set(message,
-                   "solver.method = cvode is not in this build (built without SUNDIALS); rebuild with "
-                   "-DWITH_SUNDIALS=ON or use collocation");
+                   "%s is not in this build (built without SUNDIALS); rebuild with "
+                   "-DWITH_SUNDIALS=ON or use %s",
+                   with_body ? "body.m above 0 with a bristle" : "solver.method = cvode",
+                   with_body ? "friction.model = Coulomb" : "collocation");
     return NULL;
 }
 
@@ -305,6 +528,12 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
                    FcStepResult* result, FcMessage* message) {
     (void)solver, (void)scene, (void)options, (void)h, (void)result;
     return fc_message_set(message, "solver.method = cvode is not in this build");
+}
+
+bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                        FcBody* body, FcStepResult* result, FcMessage* message) {
+    (void)solver, (void)scene, (void)options, (void)h, (void)body, (void)result;
+    return fc_message_set(message, "body.m above 0 with a bristle is not in this build");
 }
 
 #endif

@@ -15,9 +15,10 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
 bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message);
 
 // SUNDIALS CVODE keeps its memory between steps, never its state. fc_cvode_new gives NULL, with *message
-// filled, without memory or in a build without SUNDIALS; fc_cvode_free takes NULL.
+// filled, without memory or in a build without SUNDIALS; fc_cvode_free takes NULL. The one with a body is for
+// fc_body_step (solver/body.h), the other one for fc_cvode_step.
 typedef struct FcCvode FcCvode;
-FcCvode* fc_cvode_new(FcMessage* message);
+FcCvode* fc_cvode_new(bool with_body, FcMessage* message);
 void fc_cvode_free(FcCvode* solver);
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message);

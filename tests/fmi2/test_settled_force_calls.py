@@ -95,5 +95,5 @@ def test_the_model_description_says_what_it_depends_on(library: Library, name: s
     assert [each.name for each in output.dependencies] == list(INPUTS)
     (unknown,) = (each for each in model.initialUnknowns if each.variable.name == name)
     parameters = {each.name for each in library.variables.values() if each.causality == "parameter"}
-    unused = {"initialState", "solver.method", "solver.stepSize", "friction.sigma_1"}
+    unused = {"initialState", "solver.method", "solver.stepSize", "friction.sigma_1", "body.x_0"}
     assert {each.name for each in unknown.dependencies} - set(INPUTS) == parameters - unused

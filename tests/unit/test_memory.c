@@ -112,7 +112,7 @@ static long allocations_of_a_context(void) {
 static void check_new_cvode(void) {
     FcMessage message = {""};
     allocations = 0;
-    FcCvode* solver = fc_cvode_new(&message);
+    FcCvode* solver = fc_cvode_new(false, &message);
     CHECK(solver == NULL && allocations >= failing);
     CHECK(strcmp(message.text, "solver.method = cvode: no memory for CVODE") == 0);
     CHECK(live == 0);
