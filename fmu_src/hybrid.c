@@ -47,10 +47,11 @@ bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
                      "co-simulation");
     }
     if (contact->state.variables.body.m != 0.0) {
-        return fc_message_set(message,
-                              "body.m = %.9g kg must be 0 kg in model exchange: give the mass to your tool, or take "
-                              "co-simulation",
-                              contact->state.variables.body.m);
+        return fc_message_set(
+            message,
+            "body.m = %.9g kg must be 0 kg in model exchange: give the mass to your tool, or take "
+            "co-simulation",
+            contact->state.variables.body.m);
     }
     double nominals[FC_STATE_COUNT] = {0.0};
     return fc_hybrid_nominals(contact, nominals, message);

@@ -80,13 +80,14 @@ static void tell_undersampling(const FcInstance* instance, double h) {
 
 static void tell_ringing(const FcInstance* instance, double h) {
     const FcVariables* v = &instance->contact.state.variables;
-    fc_log(instance, FC_CALL_DO_STEP, fmi2Warning, FC_LOG_STATUS_WARNING,
-           "the mass body.m = %s rings undamped on sigma = %s, %.3g periods in the step of %s: F_t is then one "
-           "sample in many; connect F_t_mean, send derivatives of the inputs, or set friction.sigma_1 to 2 zeta "
-           "sqrt(sigma m), %.3g N.s/m for zeta = 0.2. This warning appears once.",
-           fc_quantity_text(v->body.m, "kg").text, fc_quantity_text(v->sigma, "N/m").text,
-           fc_friction_contact_rings(&instance->contact, h), fc_quantity_text(h, "s").text,
-           0.4 * sqrt(v->sigma * v->body.m));
+    fc_log(
+        instance, FC_CALL_DO_STEP, fmi2Warning, FC_LOG_STATUS_WARNING,
+        "the mass body.m = %s rings undamped on sigma = %s, %.3g periods in the step of %s: F_t is then one "
+        "sample in many; connect F_t_mean, send derivatives of the inputs, or set friction.sigma_1 to 2 zeta "
+        "sqrt(sigma m), %.3g N.s/m for zeta = 0.2. This warning appears once.",
+        fc_quantity_text(v->body.m, "kg").text, fc_quantity_text(v->sigma, "N/m").text,
+        fc_friction_contact_rings(&instance->contact, h), fc_quantity_text(h, "s").text,
+        0.4 * sqrt(v->sigma * v->body.m));
 }
 
 static void tell_unused_force(const FcInstance* instance, double h) {
@@ -96,8 +97,8 @@ static void tell_unused_force(const FcInstance* instance, double h) {
            fc_quantity_text(instance->contact.state.variables.body.F, "N").text);
 }
 
-static void tell_once(FcInstance* instance, unsigned what, bool is_so, void (*tell)(const FcInstance*, double),
-                      double h) {
+static void tell_once(FcInstance* instance, unsigned what, bool is_so,
+                      void (*tell)(const FcInstance*, double), double h) {
     if (is_so && !(instance->told & what)) {
         tell(instance, h);
         instance->told |= what;

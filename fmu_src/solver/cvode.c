@@ -43,7 +43,7 @@
 enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, POSITION, MOST_STATES };
 
 // Indicators of events: those of a regime; with a mass w, and the slope of F_t over the rate of w.
-enum { OF_REGIME, REVERSAL = 2, JUMP, MOST_INDICATORS };
+enum { OF_REGIME = 0, REVERSAL = 2, JUMP = 3, MOST_INDICATORS = 4 };
 
 struct FcCvode {
     SUNContext context;
@@ -54,8 +54,9 @@ struct FcCvode {
     void* cvode;
     int states; // their number
     // The present regime, for the callbacks.
-    const FcScene* scene; // without damping
-    double start;         // s, local time at which the regime starts; CVODE's time is 0 there
+    FcScene scene; // without damping, which is not a part of the result
+    FcFriction friction;
+    double start; // s, local time at which the regime starts; CVODE's time is 0 there
     FcRegime regime;
     int slips;
     double evaluations; // of the motion
@@ -90,7 +91,7 @@ static double impulse_of(const FcCvode* solver, double t, double delta, double i
     const FcBody* body = &solver->body;
     double of = impulse - solver->impulse_0 + solver->damped->sigma_1 * (delta - solver->delta_0);
     if (solver->damped->sigma_2 != 0.0) {
-        of += solver->damped->sigma_2 * (fc_drive_displacement(&solver->scene->drive, 0.0, t) + body->v * t +
+        of += solver->damped->sigma_2 * (fc_drive_displacement(&solver->scene.drive, 0.0, t) + body->v * t +
                                          fc_body_pushed_twice(body, t) / body->m + position);
     }
     return of;
@@ -103,11 +104,10 @@ static double velocity_of(const FcCvode* solver, double t, double impulse) {
 // The scene in which the bristle moves; *impulse [N s] becomes that of F_t.
 static FcScene scene_at(const FcCvode* solver, double tau, N_Vector y, double* impulse) {
     const double t = solver->start + tau;
-    FcScene scene = fc_scene_from(solver->scene, t);
+    FcScene scene = fc_scene_from(&solver->scene, t);
     *impulse = 0.0;
     if (has_body(solver)) {
-        *impulse =
-            impulse_of(solver, t, NV_Ith_S(y, DELTA), NV_Ith_S(y, IMPULSE), NV_Ith_S(y, POSITION));
+        *impulse = impulse_of(solver, t, NV_Ith_S(y, DELTA), NV_Ith_S(y, IMPULSE), NV_Ith_S(y, POSITION));
         scene.drive.V.value += velocity_of(solver, t, *impulse);
     }
     return scene;
@@ -181,8 +181,8 @@ static void jacobian_of_body(const FcCvode* solver, const FcScene* now, N_Vector
         const FcMotion by = fc_motion_along(now, solver->regime, bristle, &along[k]);
         double* column = SM_COLUMN_D(J, of[k]);
         set_rates(now, &by, column);
-        const double damping =
-            damped->sigma_1 * (by.rates.delta * w + delta_rate * along[k].V) + 2.0 * damped->sigma_2 * w * along[k].V;
+        const double damping = damped->sigma_1 * (by.rates.delta * w + delta_rate * along[k].V) +
+                               2.0 * damped->sigma_2 * w * along[k].V;
         column[WORK] += damping;
         column[HEAT] += damping;
         column[POSITION] = along[k].V;
@@ -213,7 +213,7 @@ static int indicators(realtype tau, N_Vector y, realtype* z, void* user) {
     FcScene now = scene_at(solver, tau, y, &impulse);
     const FcBristle bristle = bristle_of(solver, y);
     if (has_body(solver)) {
-        z[REVERSAL] = solver->scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : fc_drive_V(&now.drive, 0.0);
+        z[REVERSAL] = solver->scene.friction->model == FC_ELASTIC_PLASTIC ? 1.0 : fc_drive_V(&now.drive, 0.0);
         z[JUMP] = inertia_of(solver, solver->regime, bristle, &now);
         add_acceleration(solver, solver->start + tau, solver->regime, bristle, &now);
     }
@@ -262,7 +262,8 @@ FcCvode* fc_cvode_new(bool with_body, FcMessage* message) {
         return solver;
     }
     fc_cvode_free(solver);
-    fc_message_set(message, "no memory for CVODE, which solver.method = cvode and body.m above 0 use");
+    fc_message_set(message, "%s: no memory for CVODE",
+                   with_body ? "body.m above 0" : "solver.method = cvode");
     return NULL;
 }
 
@@ -299,7 +300,7 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
     const double moment = has_body(solver) ? fc_least(h, sqrt(solver->body.m / stiffness)) : h; // s
-    const double of[] = {delta,        delta,        force * moment,    force * h,
+    const double of[] = {delta,        delta,        force * moment,   force * h,
                          force * path, force * path, delta * path / h, force * moment * h / solver->body.m};
     for (int k = 0; k < solver->states; k++) {
         NV_Ith_S(solver->allowed, k) = fc_most(of[k], LEAST_ALLOWED);
@@ -308,10 +309,10 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
 
 // Longest step [s] from the time t [s] that can't go over the peak of a Stribeck curve; INFINITY without one.
 static double stribeck_step(const FcCvode* solver, double tau) {
-    if (!fc_has_stribeck_curve(solver->scene->friction)) {
+    if (!fc_has_stribeck_curve(solver->scene.friction)) {
         return INFINITY;
     }
-    const FcScene* scene = solver->scene;
+    const FcScene* scene = &solver->scene;
     const FcDrive* drive = &scene->drive;
     const FcVibration* vibration = &drive->vibration;
     double rate = hypot(drive->V.rate, drive->V_y.rate) +
@@ -350,7 +351,8 @@ static void drop(const FcCvode* solver, const FcScene* scene, FcStepResult* now)
     const double sigma_1 = solver->damped->sigma_1;
     Drop of = {*scene, scene->drive.V.value, fabs(now->delta), side * sigma_1 / solver->body.m};
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double fall = of.first - at.limit / fc_stribeck(scene->friction, at.V) / at.sigma; // to that of a fast slip
+    const double fall =
+        of.first - at.limit / fc_stribeck(scene->friction, at.V) / at.sigma; // to that of a fast slip
     double outside = 0.0;
     double evaluations = 0.0;
     for (int k = 0; k <= SAMPLES; k++) {
@@ -360,7 +362,8 @@ static void drop(const FcCvode* solver, const FcScene* scene, FcStepResult* now)
             outside = size;
         } else if (outside != 0.0) {
             const double at_outside = inside_bound(&of, outside);
-            const double end = fc_root_between(inside_bound, &of, size, value, outside, at_outside, 0.0, &evaluations);
+            const double end =
+                fc_root_between(inside_bound, &of, size, value, outside, at_outside, 0.0, &evaluations);
             const double w = fc_drive_V(&scene->drive, 0.0) + 0.5 * of.per_delta * (of.first - end);
             const double damping = -side * sigma_1 * (of.first - end) * w;
             now->work += damping;
@@ -383,7 +386,8 @@ static FcScene scene_with(FcCvode* solver, FcStepResult* now) {
     put(solver, now);
     double impulse;
     FcScene scene = scene_at(solver, 0.0, solver->y, &impulse);
-    add_acceleration(solver, solver->start, (FcRegime)fc_side(fc_bristle_of(now)), fc_bristle_of(now), &scene);
+    add_acceleration(solver, solver->start, (FcRegime)fc_side(fc_bristle_of(now)), fc_bristle_of(now),
+                     &scene);
     return scene;
 }
 
@@ -411,7 +415,7 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
 // if CVODE fails.
 static double integrate_regime(FcCvode* solver, double duration) {
     void* cvode = solver->cvode;
-    const double parts = STEPS_PER_PERIOD * periods_of(&solver->scene->drive, duration);
+    const double parts = STEPS_PER_PERIOD * periods_of(&solver->scene.drive, duration);
     snprintf(solver->reason, sizeof solver->reason, "%s", "too much work in one step");
     if (!(duration > 0.0) || CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSVtolerances(cvode, SMALLEST_LOCAL_ERROR, solver->allowed) != CV_SUCCESS ||
@@ -442,11 +446,10 @@ static double integrate_regime(FcCvode* solver, double duration) {
 // Takes *result over [0, h] of the scene without damping. False with solver->reason.
 static bool integrate(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                       double* t, FcStepResult* result) {
-    FcFriction friction = *scene->friction; // the damping is not a part of the result
-    friction.sigma_1 = friction.sigma_2 = 0.0;
-    FcScene undamped = *scene;
-    undamped.friction = &friction;
-    solver->scene = &undamped;
+    solver->friction = *scene->friction;
+    solver->friction.sigma_1 = solver->friction.sigma_2 = 0.0;
+    solver->scene = *scene;
+    solver->scene.friction = &solver->friction;
     solver->evaluations = 0.0;
     solver->regime = FC_FREE;
     set_allowed(solver, scene, options, h);
@@ -498,11 +501,12 @@ bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     if (h > 0.0 && (h < SHORTEST || !integrate(solver, scene, options, h, &t, result))) {
         const double stiffness = fc_scene_largest_stiffness(scene, h);
         const double omega = sqrt(stiffness / body->m);
-        return fc_message_set(message,
-                              "body.m = %.9g kg: the step of %.5g s is refused: %s. A stuck mass rings at %.4g kHz, %.4g "
-                              "cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = Coulomb",
-                              body->m, h, h < SHORTEST ? "it is too short" : solver->reason,
-                              1e-3 * omega / FC_TWO_PI, omega * h / FC_TWO_PI, 0.4 * body->m * omega);
+        return fc_message_set(
+            message,
+            "body.m = %.9g kg: the step of %.5g s is refused: %s. A stuck mass rings at %.4g kHz, %.4g "
+            "cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = Coulomb",
+            body->m, h, h < SHORTEST ? "it is too short" : solver->reason, 1e-3 * omega / FC_TWO_PI,
+            omega * h / FC_TWO_PI, 0.4 * body->m * omega);
     }
     const double impulse = impulse_of(solver, h, result->delta, result->impulse, solver->position);
     result->impulse = solver->impulse_0 + impulse;

@@ -284,7 +284,7 @@ def test_all_declared_dependencies_are_answered(
         pytest.skip("model exchange has no Coulomb")
     state = "step complete" if kind == CO_SIMULATION else "continuous-time mode"
     instance = new_instance(kind=kind).start({"friction.model": law}, {"V_y": 0.1}, state)
-    assert len(declared()) == 90
+    assert len(declared()) == 92
     for unknown, known in declared():
         assert instance.directional([unknown], {known: 1.0})[0] == OK, (unknown, known)
 

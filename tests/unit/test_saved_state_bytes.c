@@ -6,7 +6,7 @@
 #include "fmi2/saved_state.h"
 #include "fmi2/variables.h"
 
-enum { MOST_BYTES = 4096, LAYOUT = 5 };
+enum { MOST_BYTES = 4096, LAYOUT = 6 };
 
 static void silent(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
                    fmi2String category, fmi2String text, ...) {
@@ -27,6 +27,7 @@ static FcSavedState full_state(void) {
             *fc_variable_integer(&friction->variables, info) = (int)info->max;
         }
     }
+    friction->variables.body.m = 0.0; // a mass does not go together with V_y
     for (size_t at = sizeof(FcVariables); at < sizeof *friction; at += sizeof(double)) {
         const double number = 1e-3 * (double)at;
         memcpy((char*)friction + at, &number, sizeof number);
