@@ -306,8 +306,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 if (!still_drifts(walk, &mean) && meetings > MOST_MEETINGS) {
                     return;
                 }
-                if (isinf(periods)) { // the sums of free periods would take digits from the cycle's
+                if (isinf(periods)) { // sums and number of free periods would take digits from the cycle's
                     fc_result_start(total, fc_bristle_of(total), total->evaluations);
+                    walk->done = 0.0;
                 }
                 walk->met = *total;
                 walk->met_at = walk->done;
