@@ -13,10 +13,10 @@
 #include "solver/method.h"
 #include "solver/pieces.h"
 
-// The largest number of steps in a communication step, like FC_MOST_EVALUATIONS (solver.h): more would seem
-// to hang. Fewer with a bound, at which each step makes a scene. Chosen empirically, for a second of computing.
-#define MOST_FIXED_STEPS 5e6
-#define MOST_BOUNDED_STEPS 1e6
+// What a step takes of FC_MOST_EVALUATIONS (solver.h), at most; with a bound, at which each step makes a scene. Chosen
+// empirically, for the same time.
+#define OF_A_STEP 2.0
+#define OF_A_BOUNDED_STEP 5.0
 
 // The part of a step that makes no further step, since hosts round their steps. Half of it does for hosts
 // that round more coarsely; twice of it stretches the steps by as much more.
@@ -134,7 +134,8 @@ static double steps_in(double h, double size) { return fc_most(1.0, ceil(h / siz
 
 bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message) {
     const double steps = steps_in(h, size);
-    const double most = fc_is_bounded(scene->friction) ? MOST_BOUNDED_STEPS : MOST_FIXED_STEPS;
+    const double most =
+        FC_MOST_EVALUATIONS / (fc_is_bounded(scene->friction) ? OF_A_BOUNDED_STEP : OF_A_STEP);
     return steps <= most ||
            fc_message_set(
                message,

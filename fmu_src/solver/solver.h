@@ -44,7 +44,7 @@ typedef struct {
     double work;        // J     integral of F V dt
     double heat;        // J     integral of F (V - delta') dt
     double drag;        // m2/s  integral of delta' V dt, the work of the damping over sigma_1
-    double evaluations; // 1     evaluations of the coefficients of the equation of the bristle
+    double evaluations; // 1     the work, in evaluations of the coefficients of the equation of the bristle
     double delta_y;     // m     across, as delta, lost and impulse are along; work, heat and drag are of both
     double lost_y;      // m
     double impulse_y;   // N s
@@ -62,11 +62,11 @@ static inline void fc_result_start(FcStepResult* result, FcBristle start, double
         .delta = start.delta, .slips = start.slips, .evaluations = evaluations, .delta_y = start.delta_y};
 }
 
-// The largest number of evaluations in one communication step or one settled state, less than a second of computing. A
-// step that needs more is refused, so that no host seems to hang. Only inputs that move over many orders of magnitude reach
-// it, and motions that never repeat.
+// The largest work of one communication step, one settled state or one derivative of a settled mean, in evaluations: 0.2 to
+// 0.4 s of computing. A call that needs more is refused, so that no host seems to hang. Only inputs that move over many
+// orders of magnitude or many periods reach it, and motions that never repeat.
 #ifndef FC_MOST_EVALUATIONS
-#define FC_MOST_EVALUATIONS 4e6
+#define FC_MOST_EVALUATIONS 3e6
 #endif
 
 #endif

@@ -29,5 +29,5 @@ def test_seeds(fuzzer: str) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="the watch reads another process's clock")
 @pytest.mark.parametrize("numbers", [[], ["--ordinary"]], ids=["of any size", "usual"])
 def test_every_call_returns(numbers: list[str]) -> None:
-    """Within a second, and in usual scenes without a floating-point trap: as scripts/check watchdog."""
+    """Within its work, and in usual scenes without a floating-point trap: as scripts/check watchdog."""
     run("watchdog", 10_000, 1, *numbers)
