@@ -1,13 +1,14 @@
 #include "climb.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
 #include "random.h"
 
-static const double MOST_PERIODS = 400.0;        // of a first step, for the reference's sake
+static const double LONG = 4.0; // periods, whose number is the reference's time: longer draws are rarer
 static const double DRAWN = 1.0 / 3.0;           // of a climb: the rest changes what was drawn
 static const double JUMPS = 0.2;                 // the chance of a second step
 static const double SHARES[] = {0.5, 0.1, 0.02}; // by which numbers change,
@@ -24,26 +25,22 @@ static size_t any_word(const char* text) {
     return found;
 }
 
-// Changes a number of the text by up to the share, or takes a word over from another text, to the first step.
+// Changes a number of the text by up to the share, or takes a word over from another text if all is one step.
 static void change_word(char* text, double share, const char* other) {
-    char changed[SEQUENCE_TEXT], word[100];
+    char before[SEQUENCE_TEXT], word[200];
+    const size_t begin = any_word(text);
+    const char *old = text + begin, *taken = other + any_word(other);
     int name;
     double value;
-    if (random_chance(TAKES_OVER)) {
-        const char* taken = other + any_word(other);
-        const char* later = strstr(text, "then ");
-        const int first = later ? (int)(later - text) : (int)strlen(text);
-        snprintf(changed, sizeof changed, "%.*s%.*s %s", first, text, (int)strcspn(taken, " "), taken,
-                 text + first);
-        strcpy(text, changed);
-        return;
-    }
-    const size_t begin = any_word(text);
-    if (sscanf(text + begin, "%*[^= ]=%n%lf", &name, &value) == 1) {
+    strcpy(before, text);
+    if (random_chance(TAKES_OVER) && !strstr(text, "then ")) {
+        snprintf(word, sizeof word, "%.*s %.*s ", (int)strcspn(old, " "), old, (int)strcspn(taken, " "),
+                 taken);
+        with_word(text, before, begin, word);
+    } else if (sscanf(old, "%*[^= ]=%n%lf", &name, &value) == 1) {
         value *= 1.0 + share * (2.0 * random_01() - 1.0);
-        snprintf(word, sizeof word, "%.*s%.17g ", name, text + begin, value);
-        with_word(changed, text, begin, word);
-        strcpy(text, changed);
+        snprintf(word, sizeof word, "%.*s%.17g ", name, old, value);
+        with_word(text, before, begin, word);
     }
 }
 
@@ -74,8 +71,17 @@ static bool has(const Sequence* sequence, const char* words) {
     return strcmp(text, with) == 0;
 }
 
+static int least(const double of[KEPT]) {
+    int least = 0;
+    for (int k = 1; k < KEPT; k++) {
+        least = of[k] < of[least] ? k : least;
+    }
+    return least;
+}
+
 void climb(Climb* c, TrySequence* try_it, void* context) {
     const time_t begin = time(NULL);
+    double spent[KEPT] = {0.0}; // periods, on changes of each: more on the worse
     for (int k = 0; k < KEPT; k++) {
         c->ratio[k] = -1.0;
     }
@@ -87,22 +93,21 @@ void climb(Climb* c, TrySequence* try_it, void* context) {
             continue;
         }
         sequence.steps = sequence.steps > 1 ? 1 + random_chance(JUMPS) : 1;
-        int place = 0;
-        for (int k = 1; k < KEPT; k++) {
-            place = c->ratio[k] < c->ratio[place] ? k : place;
-        }
-        if (done > DRAWN && c->ratio[place] >= 0.0) {
-            place = random_below(KEPT);
+        const bool changes = done > DRAWN && c->ratio[least(c->ratio)] >= 0.0;
+        const int place = least(changes ? spent : c->ratio);
+        if (changes) {
             sequence = changed(&c->kept[place], &sequence);
         }
         const ReferenceScene *first = &sequence.step[0], *last = &sequence.step[sequence.steps - 1];
-        if (first->h * first->f > MOST_PERIODS || !scene_is_in_domain(first) || !scene_is_in_domain(last) ||
-            !has(&sequence, c->where)) {
+        const double periods = first->h * first->f + last->h * last->f;
+        of_time = difftime(time(NULL), begin) / c->seconds;
+        spent[place] += changes ? (1.0 + periods) / sqrt(c->ratio[place]) : 0.0;
+        if ((!changes && random_01() * periods > LONG) || !scene_is_in_domain(first) ||
+            !scene_is_in_domain(last) || !has(&sequence, c->where)) {
             continue;
         }
         const double ratio = try_it(context, &sequence);
         trials += 1.0;
-        of_time = difftime(time(NULL), begin) / c->seconds;
         if (ratio > c->ratio[place]) {
             c->ratio[place] = ratio;
             c->kept[place] = sequence;

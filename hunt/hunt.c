@@ -116,8 +116,7 @@ static double ratio_of(void* hunt, const Sequence* sequence) {
 // Prints the misses of a climb, and its worst sequence.
 static void try_climb(Hunt* hunt) {
     const Options* o = &hunt->options;
-    Climb of = {.seed = (uint64_t)o->seed, .kind = o->kind, .where = o->where};
-    of.seconds = o->climb;
+    Climb of = {.seed = (uint64_t)o->seed, .kind = o->kind, .where = o->where, .seconds = o->climb};
     of.trials = o->scenes;
     climb(&of, ratio_of, hunt);
     int worst = 0;

@@ -13,7 +13,6 @@ static const double MOST_PLANAR = 30.0;   // periods of a step,
 static const double MOST_LEAP = 400.0;    // and of a leap: of one whose inputs move
 static const double SHORTEST = 1e-9;      // s, of a step
 static const double NEARLY_NONE = 1e-9;   // m/s, across
-static const double MOST_NEAR_LINE = 3.3; // periods of a step, for the reference's sake
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
@@ -268,10 +267,7 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
                    : length(&full, plane    ? MOST_PLANAR
                                    : linear ? MOST_MOVING
                                             : MOST_PERIODS);
-    if (near_line) {
-        full.V_y = NEARLY_NONE;
-        full.h = vibrates(&full) ? fmin(full.h, MOST_NEAR_LINE / full.f) : full.h;
-    }
+    full.V_y = near_line ? NEARLY_NONE : full.V_y;
     for (int k = 0, wanted = near_line ? 1 : 1 + random_below(4); k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
         if (k > 0) {
