@@ -683,6 +683,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     if (ends_elsewhere) {
         scene_from(contact, t + h, time_rest, before->next_rate, h, &moved);
         if (has_body) {
+            body.v =
+                body.sticks ? 0.0 - fc_drive_V(&moved.drive, 0.0) : body.v; // as the next step will see it
             moved = fc_body_scene(&moved, &body, fc_bristle_of(&result));
         }
         response = fc_scene_contact(&moved, 0.0);

@@ -16,6 +16,7 @@ typedef struct {
     FcLinearInput F; // N
     double v;        // m/s, at the start of the step
     double x;        // m
+    bool sticks;     // Coulomb's law: whether a step has left it at rest on the other surface
 } FcBody;
 
 // The impulse of F over [0, t] [N s].

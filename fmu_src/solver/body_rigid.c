@@ -10,6 +10,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "model/constants.h"
 #include "model/extremes.h"
 #include "model/root.h"
 #include "solver/body.h"
@@ -29,6 +30,9 @@ static const double ROUNDING = 1e-13;
 // An inaccurate panel is shortened by this factor, at most so often; others change the number of tries.
 static const double SHORTENED = 0.7;
 enum { MOST_TRIES = 60 };
+
+// The part of a period that a panel goes through at the most: its polynomial of w is then right to 1e-10 of V_1.
+static const double OF_PERIOD = 0.3;
 
 typedef struct {
     const FcScene* scene;
@@ -94,15 +98,8 @@ static void make_slip(const Rigid* of, double h, Panel* panel) {
         panel->to_end[i] = of->side * panel->w[i];
         slope[i] = F[i] - sigma_2 * panel->w[i];
     }
-    double limit = 0.0;
-    double speed = DBL_MIN;
-    for (int i = 0; i < POINTS; i++) {
-        limit = fc_most(limit, fabs(F[i]));
-        speed = fc_most(speed, fabs(panel->v[i]) + fabs(V[i]));
-    }
     panel->h = h;
-    panel->error = fc_radau_quadrature_error(slope) + (1.0 + z[0]) * fc_radau_unresolved(slope, z[0]) +
-                   limit / speed * fc_radau_quadrature_error(panel->to_end);
+    panel->error = fc_radau_quadrature_error(slope) + (1.0 + z[0]) * fc_radau_unresolved(slope, z[0]);
 }
 
 static void make_stick(const Rigid* of, double h, Panel* panel) {
@@ -194,11 +191,18 @@ static double take_accurate(const Rigid* of, double* length, Panel* panel, doubl
 
 // Shortens the panel to its end of a slip: the part, and then Newton's method for w = 0.
 static void end_slip(const Rigid* of, double part, Panel* panel, double* evaluations) {
-    double length = part * panel->h;
-    for (int i = 0; i < 3 && length > 0.0 && length <= panel->h; i++) {
+    const double most = panel->h;
+    double length = part * most;
+    double change = INFINITY;
+    while (length > 0.0 && length <= most && fabs(change) > DBL_EPSILON * (of->t + length)) {
+        const double last = change;
         make_slip(of, length, panel);
         *evaluations += FC_STAGES;
-        length -= panel->w[LAST] * of->body->m / (holding_force(of, of->t + length) - panel->F_t[LAST]);
+        change = -panel->w[LAST] * of->body->m / (holding_force(of, of->t + length) - panel->F_t[LAST]);
+        if (!(fabs(change) < 0.5 * fabs(last))) { // rounding
+            break;
+        }
+        length += change;
     }
 }
 
@@ -234,10 +238,12 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
     }
     double impulse = 0.0;
     double moved = 0.0;
-    double next = h;
+    const FcDrive* drive = &scene->drive;
+    const double longest = drive->vibration.V_1 != 0.0 ? OF_PERIOD * FC_TWO_PI / drive->omega : h;
+    double next = longest;
     while (of.t < h) {
         const double rest = h - of.t;
-        double length = fc_least(next, rest);
+        double length = fc_least(fc_least(next, longest), rest);
         Panel panel;
         const double part = take_accurate(&of, &length, &panel, &result->evaluations);
         if (result->evaluations > FC_MOST_EVALUATIONS) {
@@ -269,13 +275,14 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
             of.sticks = false;
             of.side = holding_force(&of, of.t) < 0.0 ? -1 : 1;
         } else if (!of.sticks && !of.is_loose && (part < 1.0 || of.side * panel.w[LAST] <= 0.0)) {
-            impulse += body->m * panel.w[LAST]; // so that w is 0 without rounding
             choose(&of);
+            impulse += of.sticks ? body->m * panel.w[LAST] : 0.0; // so that w is 0 without rounding
         }
         of.v = body->v + (fc_body_pushed(body, of.t) - impulse) / body->m;
     }
     result->impulse += impulse;
     body->x += moved;
     fc_body_move(body, h, impulse);
+    body->sticks = of.sticks;
     return true;
 }

@@ -33,6 +33,7 @@
 // (tests/solver/test_cvode.py). The part of solver.tolerance that bounds the local error of one step, so that the
 // sum of the errors is within it, and that of a state, for its rounding.
 #define LOCAL_ERROR_FRACTION 0.003
+#define LOCAL_ERROR_FRACTION_OF_BODY 0.001 // what a mass remembers adds up
 #define SMALLEST_LOCAL_ERROR 1e-14
 #define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
 // A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that
@@ -289,19 +290,25 @@ static double periods_of(const FcDrive* drive, double h) {
 // up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma.
 static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h) {
     const double stiffness = fc_scene_largest_stiffness(scene, h);
-    double speed = fc_drive_largest_speed(&scene->drive, h);
+    FcDrive drive = scene->drive;
+    drive.V.value += solver->body.v;
+    double speed = fc_drive_largest_speed(&drive, h);
     if (has_body(solver)) { // at the least, ringing
-        speed += fabs(solver->body.v) + options->force / sqrt(stiffness * solver->body.m);
+        speed += options->force / sqrt(stiffness * solver->body.m);
     }
     const double path = speed * h;
     const double forgets =
         scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
     const double periods = fc_most(1.0, periods_of(&scene->drive, h) / fc_most(1.0, forgets));
-    const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
+    const double fraction = has_body(solver) ? LOCAL_ERROR_FRACTION_OF_BODY : LOCAL_ERROR_FRACTION;
+    const double force = fraction * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
+    // Energies never forget: their errors add up as those of chance do.
+    const double all = has_body(solver) ? sqrt(fc_most(1.0, periods_of(&scene->drive, h))) : 1.0;
+    const double energy = force * path * fc_least(1.0, periods / all);
     const double moment = has_body(solver) ? fc_least(h, sqrt(solver->body.m / stiffness)) : h; // s
-    const double of[] = {delta,        delta,        force * moment,   force * h,
-                         force * path, force * path, delta * path / h, force * moment * h / solver->body.m};
+    const double of[] = {delta,  delta,  force * moment,   force * h,
+                         energy, energy, delta * path / h, force * moment * h / solver->body.m};
     for (int k = 0; k < solver->states; k++) {
         NV_Ith_S(solver->allowed, k) = fc_most(of[k], LEAST_ALLOWED);
     }
@@ -395,8 +402,11 @@ static FcScene scene_with(FcCvode* solver, FcStepResult* now) {
 static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     solver->start = t;
     FcScene scene = scene_with(solver, now);
-    if (has_body(solver) && fc_has_static_friction(scene.friction) && solver->damped->sigma_1 != 0.0) {
-        const bool breaks_away = now->slips == 0 && fc_reach(&scene, fc_bristle_of(now)).slips != 0;
+    if (has_body(solver) && fc_has_static_friction(scene.friction)) {
+        // What it does then is known after the drop, since it moves w and by the force its rate.
+        const double reached = fc_size(fc_reach(&scene, fc_bristle_of(now)));
+        const bool breaks_away =
+            now->slips == 0 && reached < (1.0 - 2.0 * FC_ROUNDING_OF_BOUND) * fc_size(fc_bristle_of(now));
         if (breaks_away || inertia_of(solver, solver->regime, fc_bristle_of(now), &scene) <= 0.0) {
             drop(solver, &scene, now);
             scene = scene_with(solver, now);
