@@ -665,7 +665,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     if (has_body || moves || !fc_method_formula(&scene, &response, method, h, start, &result)) {
         const FcSolverOptions options = solver_options(v, seen, h, bristle);
         if (has_body
-                ? !fc_body_step(&scene, contact->cvode[1], &options, h, start, &body, &result, message)
+                ? !fc_body_step(&scene, method == FC_METHOD_CVODE ? contact->cvode[1] : NULL, &options, h,
+                                start, &body, &result, message)
                 : !fc_method_step(&scene, method, contact->cvode[0], &options, h, start, &result, message)) {
             return false;
         }

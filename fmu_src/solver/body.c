@@ -5,6 +5,8 @@
 
 #include "model/extremes.h"
 #include "model/regime.h"
+#include "model/root.h"
+#include "solver/body_march.h"
 #include "solver/pieces.h"
 
 double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body) {
@@ -35,6 +37,49 @@ FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristl
     return seen;
 }
 
+// A bristle that drops from `first` [m], and by its damper moves the mass: w changes by per_delta [1/s] over the drop.
+typedef struct {
+    FcScene scene;
+    double V, first, per_delta;
+} Drop;
+
+// The kinetic bound less the deflection [m], for fc_root_between.
+static double inside_bound(void* context, double size) {
+    Drop* of = context;
+    of->scene.drive.V.value = of->V + of->per_delta * (of->first - size);
+    const FcCoefficients at = fc_scene_coefficients(&of->scene, 0.0);
+    return at.limit / at.sigma - size;
+}
+
+void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* now) {
+    enum { SAMPLES = 64 }; // half of them pass over a smaller jump
+    const double side = fc_side(fc_bristle_of(now));
+    Drop of = {*scene, scene->drive.V.value, fabs(now->delta), side * sigma_1 / m};
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double fall =
+        of.first - at.limit / fc_stribeck(scene->friction, at.V) / at.sigma; // to that of a fast slip
+    double outside = 0.0;
+    double evaluations = 0.0;
+    for (int k = 0; k <= SAMPLES; k++) {
+        const double size = of.first - fall * k / SAMPLES;
+        const double value = inside_bound(&of, size);
+        if (value < 0.0) {
+            outside = size;
+        } else if (outside != 0.0) {
+            const double at_outside = inside_bound(&of, outside);
+            const double end =
+                fc_root_between(inside_bound, &of, size, value, outside, at_outside, 0.0, &evaluations);
+            const double w = fc_drive_V(&scene->drive, 0.0) + 0.5 * of.per_delta * (of.first - end);
+            const double damping = -side * sigma_1 * (of.first - end) * w;
+            now->work += damping;
+            now->heat += damping + 0.5 * at.sigma * (of.first - end) * (of.first + end);
+            now->delta = side * end;
+            now->slips = (int)side;
+            return;
+        }
+    }
+}
+
 bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
                   FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && body->m > 0.0 && !fc_is_planar(scene, from));
@@ -47,8 +92,11 @@ bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* o
             fc_loose_step(result);
         }
         const bool is_rigid = is_loose || scene->friction->model == FC_COULOMB;
-        if (is_rigid ? !fc_body_rigid_step(pieces.scene, options, pieces.h, body, result, message)
-                     : !fc_body_cvode_step(cvode, pieces.scene, options, pieces.h, body, result, message)) {
+        const bool is_done =
+            is_rigid ? fc_body_rigid_step(pieces.scene, options, pieces.h, body, result, message)
+            : cvode  ? fc_body_cvode_step(cvode, pieces.scene, options, pieces.h, body, result, message)
+                     : fc_body_march_step(pieces.scene, options, pieces.h, body, result, message);
+        if (!is_done) {
             return false;
         }
     }

@@ -47,6 +47,10 @@ double fc_body_acceleration(const FcScene* scene, FcRegime regime, FcBristle bri
 // The scene as the bristle sees it at its start: V contains v, and with a bristle the rate of V contains v'.
 FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle);
 
+// A bristle with a damper breaks away, or jumps along the kinetic bound: delta falls to the first place on D(w), while
+// m w + sigma_1 delta stays. Adds work and heat; V of the scene contains v before.
+void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* now);
+
 // Coulomb's law: whether the surfaces rest on each other at the start of that scene, and F_t [N] there, of which
 // *sticks says whether it is below the limit.
 bool fc_body_rests(const FcScene* scene);

@@ -336,52 +336,6 @@ static double stribeck_step(const FcCvode* solver, double tau) {
     return rate > 0.0 ? change / rate : INFINITY;
 }
 
-// A bristle that drops from `first` [m], and by its damper moves the mass: w changes by per_delta [1/s] over the drop.
-typedef struct {
-    FcScene scene;
-    double V, first, per_delta;
-} Drop;
-
-// The kinetic bound less the deflection [m], for fc_root_between.
-static double inside_bound(void* context, double size) {
-    Drop* of = context;
-    of->scene.drive.V.value = of->V + of->per_delta * (of->first - size);
-    const FcCoefficients at = fc_scene_coefficients(&of->scene, 0.0);
-    return at.limit / at.sigma - size;
-}
-
-// A bristle with a damper breaks away, or jumps along the kinetic bound: delta falls to the first place on D(w), while
-// m w + sigma_1 delta stays.
-static void drop(const FcCvode* solver, const FcScene* scene, FcStepResult* now) {
-    enum { SAMPLES = 64 }; // half of them pass over a smaller jump
-    const double side = fc_side(fc_bristle_of(now));
-    const double sigma_1 = solver->damped->sigma_1;
-    Drop of = {*scene, scene->drive.V.value, fabs(now->delta), side * sigma_1 / solver->body.m};
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double fall =
-        of.first - at.limit / fc_stribeck(scene->friction, at.V) / at.sigma; // to that of a fast slip
-    double outside = 0.0;
-    double evaluations = 0.0;
-    for (int k = 0; k <= SAMPLES; k++) {
-        const double size = of.first - fall * k / SAMPLES;
-        const double value = inside_bound(&of, size);
-        if (value < 0.0) {
-            outside = size;
-        } else if (outside != 0.0) {
-            const double at_outside = inside_bound(&of, outside);
-            const double end =
-                fc_root_between(inside_bound, &of, size, value, outside, at_outside, 0.0, &evaluations);
-            const double w = fc_drive_V(&scene->drive, 0.0) + 0.5 * of.per_delta * (of.first - end);
-            const double damping = -side * sigma_1 * (of.first - end) * w;
-            now->work += damping;
-            now->heat += damping + 0.5 * at.sigma * (of.first - end) * (of.first + end);
-            now->delta = side * end;
-            now->slips = (int)side;
-            return;
-        }
-    }
-}
-
 static void put(FcCvode* solver, FcStepResult* now) {
     for (int k = 0; k < solver->states; k++) {
         NV_Ith_S(solver->y, k) = *state(solver, now, k);
@@ -408,7 +362,7 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
         const bool breaks_away =
             now->slips == 0 && reached < (1.0 - 2.0 * FC_ROUNDING_OF_BOUND) * fc_size(fc_bristle_of(now));
         if (breaks_away || inertia_of(solver, solver->regime, fc_bristle_of(now), &scene) <= 0.0) {
-            drop(solver, &scene, now);
+            fc_body_drop(&scene, solver->body.m, solver->damped->sigma_1, now);
             scene = scene_with(solver, now);
         }
     }

@@ -88,6 +88,7 @@ typedef struct {{
     double weight[10];     // of the integral over the panel
     double start[10];      // value at the start of the polynomial through the stages, less the value there
     double inverse[9][10]; // of the Runge-Kutta matrix
+    double matrix[9][10];  // [i][j]: weight of node j in the integral up to node i
     double tail[10][4];    // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
     double barycentric[10];
     double sample[10][{SAMPLES}];  // [j][k]: weight of point j in the value of the polynomial after the part (k + 1) / {SAMPLES}
@@ -99,6 +100,7 @@ static const FcRadauRule FC_RADAU = {{
     {row([*rule.weights, mpf(0)])},
     {row([*rule.start, -mpf(1)])},
     {rows([[inverse[i, j] for j in range(STAGES)] for i in range(STAGES)])},
+    {rows([[*rule.integral[i, :], mpf(0)] for i in range(STAGES)])},
     {rows([*rule.tail, [mpf(0)] * 4])},
     {row(barycentric_weights(points))},
     {rows([list(of_point) for of_point in samples])},

@@ -1,0 +1,62 @@
+#include "solver/body_stuck.h"
+
+#include <math.h>
+
+#include "model/extremes.h"
+
+// The largest |Z|, over the radius of the bound. Chosen empirically: ten times of it loses a digit near resonance, where panels
+// keep it; a tenth costs time there.
+static const double MOST_DRIVEN = 1e3;
+
+bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyStart* at, double t,
+                         FcBodyStuck* stuck) {
+    const FcScene* scene = plane->scene;
+    const FcDrive* drive = &scene->drive;
+    if (at->kind != FC_STICKS || !fc_scene_stiffness_is_constant(scene) ||
+        !fc_scene_limit_is_constant(scene) || scene->friction->sigma_1 != 0.0 ||
+        scene->friction->sigma_2 != 0.0) {
+        return false;
+    }
+    const FcPhase phase = fc_drive_phase(drive, t);
+    const FcPlaneCoefficients now = fc_plane_coefficients(plane, t, phase);
+    const double driven = body->m * drive->vibration.V_1 * drive->omega; // N
+    const double stiffness = now.sigma - body->m * drive->omega * drive->omega;
+    if (fabs(driven) * now.sigma > MOST_DRIVEN * now.static_limit * fabs(stiffness)) {
+        return false;
+    }
+    *stuck = (FcBodyStuck){.A = (fc_input_after(body->F, t) + body->m * drive->V.rate) / now.sigma,
+                           .B = body->F.rate / now.sigma,
+                           .Z = driven != 0.0 ? -driven / stiffness : 0.0,
+                           .omega = drive->omega,
+                           .ringing = sqrt(now.sigma / body->m),
+                           .phase = phase};
+    stuck->C = at->delta - (stuck->A + stuck->Z * phase.sine);
+    stuck->S = (at->v + now.V.x - (stuck->B + stuck->Z * stuck->omega * phase.cosine)) / stuck->ringing;
+    return true;
+}
+
+double fc_body_stuck_delta(const FcBodyStuck* of, double x, double* rate, double* integral) {
+    // Differences to the start, which keep the digits of a short time.
+    const double half_sine = sin(0.5 * of->ringing * x);
+    const double less_1 = -2.0 * half_sine * half_sine; // cos(w x) - 1
+    const double sine = sin(of->ringing * x);
+    const double s = sin(of->omega * x);
+    const double c = cos(of->omega * x);
+    const double swing = of->phase.sine * c + of->phase.cosine * s;
+    const double swing_rate = of->phase.cosine * c - of->phase.sine * s;
+    *rate = of->B + of->omega * of->Z * swing_rate + of->ringing * (of->S * (1.0 + less_1) - of->C * sine);
+    *integral = (of->A + 0.5 * of->B * x) * x + (of->C * sine - of->S * less_1) / of->ringing;
+    if (of->Z != 0.0) {
+        *integral += of->Z * (of->phase.cosine - swing_rate) / of->omega;
+    }
+    return of->A + of->B * x + of->Z * swing + of->C * (1.0 + less_1) + of->S * sine;
+}
+
+double fc_body_stuck_free_time(const FcBodyStuck* of, double D, double end) {
+    const double most = D * (1.0 - 1e-9) - fabs(of->Z) - hypot(of->C, of->S); // of |A + B t|
+    if (!(most > fabs(of->A))) {
+        return 0.0;
+    }
+    const double way = most - (of->B < 0.0 ? -of->A : of->A);
+    return fabs(of->B) * end > way ? way / fabs(of->B) : end;
+}
