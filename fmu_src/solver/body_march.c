@@ -32,6 +32,8 @@ static const double END_OF_LAYER = 30.0;
 static const double SHARE_OF_PERIODS = 0.1;
 // Derived: the tail of a function that is rounded, over it, some 100 eps.
 static const double ROUNDING = 3e-14;
+// Of a velocity, over the largest: 5 eps.
+static const double EPSILON = 1e-15;
 // Cuts at one event, refusals of one panel, and panels in a row that do not get on, at an event that rounding hides.
 enum { MOST_CUTS = 12, MOST_TRIES = 25, MOST_STALLED = 50 };
 
@@ -82,7 +84,7 @@ static Close event_function(const March* march, Event event, const FcNodes* node
     const FcFriction* friction = friction_of(march);
     const double tolerance = march->interval->tolerance;
     const double D = radius(nodes, LAST);
-    const double rounding = 1e-15 * march->speed;
+    const double rounding = EPSILON * march->speed;
     double allowed;
     switch (event) {
     case REVERSAL:
@@ -487,7 +489,16 @@ static bool take_panel(March* march) {
     const double u = fc_straight_place(&march->part.in, march->t);
     double h;
     Event event;
-    if (!take_accurate(march, u, &h, &nodes, &panel) || !cut_at_event(march, u, &h, &nodes, &panel, &event)) {
+    if (!take_accurate(march, u, &h, &nodes, &panel)) {
+        return false;
+    }
+    // A push of 0 at the start decides just after.
+    if (march->at.kind == FC_SLIPS && panel.rate[START].push <= EPSILON * march->speed &&
+        panel.rate[0].push < 0.0) {
+        begin_free(march, panel.w[START], panel.rate[START].w);
+        return true;
+    }
+    if (!cut_at_event(march, u, &h, &nodes, &panel, &event)) {
         return false;
     }
     append(march, &nodes, &panel);
