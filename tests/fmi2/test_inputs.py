@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from ctypes import c_double
 
 import numpy as np
 import pytest
@@ -109,6 +110,49 @@ def test_a_used_input_of_0_is_refused_with_a_hint(
             assert instance.set({name: start[name]}) == OK
             assert instance.call("fmi2ExitInitializationMode") == OK
             assert math.isfinite(*instance.get("F_t"))
+
+
+BAD = [  # an input that the scene cannot use, and what the message says of it
+    ({}, {"d": 0.0}, "d = 0 m must be above 0 m"),
+    ({}, {"d": -1e-6}, "d = -1e-06 m must be above 0 m"),
+    ({}, {"E": 0.0}, "E = 0 Pa must be above 0 Pa"),
+    (BY_LOAD, {"E": -1.0}, "E = -1 Pa must be above 0 Pa"),
+    (BY_LOAD, {"load": 1e9}, "load = 1e+09 N presses the surfaces together"),
+    ({}, {"d": 1e-6}, "vibration.a_d = 2e-06 m must be below d = 1e-06 m"),
+]
+
+
+@pytest.mark.parametrize("kind", [CO_SIMULATION, MODEL_EXCHANGE], ids=["co-simulation", "model exchange"])
+@pytest.mark.parametrize(("choices", "bad", "message"), BAD, ids=str)
+def test_an_input_is_judged_by_the_call_that_uses_it(
+    new_instance: Callable[..., Instance],
+    kind: int,
+    choices: dict[str, int],
+    bad: dict[str, float],
+    message: str,
+) -> None:
+    """It is taken, so that inputs may be set in any order. Refused calls change nothing."""
+    state = "step complete" if kind == CO_SIMULATION else "continuous-time mode"
+    values = {"V": 0.02, "vibration.a_d": 2e-6, "vibration.V_1": 0.1}
+    one, other = (new_instance(kind=kind).start(choices, values, state) for _ in range(2))
+    (name,) = bad
+    (good,) = one.get(name)
+    assert one.set(bad) == OK and one.set({"V": 0.03}) == OK
+    before = one.fingerprint()
+    for use in ("F_t", "F_t_settled", "der(delta)", "a derivative", "a step"):
+        if use == "a step" and kind == CO_SIMULATION:
+            assert one.step(0.0, 1e-4) == ERROR
+        elif use == "a derivative":
+            assert one.directional(["F_t"], {"V": 1.0})[0] == ERROR
+        elif use != "a step":
+            assert one.call("fmi2GetReal", one.references([use]), 1, (c_double * 1)()) == ERROR
+        assert message in one.last_message.text, use
+        assert one.fingerprint() == before
+    assert one.set({name: good}) == OK and other.set({"V": 0.03}) == OK
+    if kind == CO_SIMULATION:
+        assert [each.step(0.0, 1e-4) for each in (one, other)] == [OK, OK]
+    assert one.get(*OUTPUTS) == other.get(*OUTPUTS)
+    assert one.fingerprint() == other.fingerprint()
 
 
 # How long a rate counts: mu load + sigma_1 mu load' / sigma for a slipping bristle of constant stiffness.
