@@ -502,7 +502,7 @@ static FcBristle first_bristle(FcFrictionContact* contact) {
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
     const FcSolverOptions options = solver_options(v, &scene, period, start);
     FcVector force;
-    return fc_method_settled(&scene, &options, start, &force, &v->solver.evaluations);
+    return fc_method_settled(&scene, &options, start, &force, &v->solver.evaluations, &contact->scatters);
 }
 
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message) {

@@ -109,6 +109,7 @@ typedef struct {
     FcContactAtModulus at_E;
     FcContactParameters at_E_of;
     double at_E_E; // Pa, 0 before the first time
+    bool scatters; // the settled state that was found last: no period of it repeats (solver/method.h)
 } FcFrictionContact;
 
 // Functions that return bool return true, or false with *message filled and the contact unchanged.

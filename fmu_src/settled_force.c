@@ -56,7 +56,7 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
         .tolerance = tolerance, .force = fc_most(scale, DBL_MIN), .step_size = v->solver.stepSize};
-    fc_method_settled(&scene, &options, start, force, evaluations);
+    fc_method_settled(&scene, &options, start, force, evaluations, &held->scatters);
     if (*evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(message,
                               "F_t_settled, F_y_settled or a derivative of them needs more than %.0e "
@@ -74,13 +74,14 @@ static bool is_finite(FcVector of, const char* prefix, FcMessage* message) {
                           isfinite(of.x) ? "F_y_settled" : "F_t_settled");
 }
 
-bool fc_settled_force(const FcFrictionContact* contact, FcVector* force, FcMessage* message) {
+bool fc_settled_force(FcFrictionContact* contact, FcVector* force, FcMessage* message) {
     FcFrictionContact held = at_time_0(contact);
     const FcVariables* v = &held.state.variables;
     double evaluations = 0.0;
     if (!dry_force(&held, v->solver.tolerance, force, &evaluations, message)) {
         return false;
     }
+    contact->scatters = held.scatters;
     force->x += v->friction.sigma_2 * v->V;
     force->y += v->friction.sigma_2 * v->V_y;
     return is_finite(*force, "", message);

@@ -14,7 +14,8 @@
 
 // Within the tolerance, for any solver.method. Returns false, with *message filled, if the inputs and
 // parameters are not a valid combination, or if the period needs more than FC_MOST_EVALUATIONS.
-bool fc_settled_force(const FcFrictionContact* contact, FcVector* force, FcMessage* message);
+// contact->scatters says whether the means are those of many periods that differ.
+bool fc_settled_force(FcFrictionContact* contact, FcVector* force, FcMessage* message);
 
 // Their partial derivatives by one input or tunable parameter, at this place in FcVariables [N over its unit],
 // one-sided at a kink: by differences, whose accuracy docs/solver.md states. Returns false as fc_settled_force

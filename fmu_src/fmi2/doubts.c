@@ -37,7 +37,21 @@ static void warn_nearly_open(const FcInstance* instance) {
     }
 }
 
-void fc_log_doubts(const FcInstance* instance) {
+enum { TOLD_SCATTER = 1 << 16 }; // of FcInstance.told, beside those of step.c
+
+void fc_log_scatter(FcInstance* instance, FcCall call) {
+    if (instance->contact.scatters && !(instance->told & TOLD_SCATTER)) {
+        fc_log(instance, call, fmi2Warning, FC_LOG_STATUS_WARNING,
+               "the settled state is chaotic: with friction.staticRatio = %s no period of the vibration "
+               "repeats, so that "
+               "F_t_settled, F_y_settled and initialState = Settled scatter. This warning appears once.",
+               fc_quantity_text(instance->contact.state.variables.friction.staticRatio, "1").text);
+        instance->told |= TOLD_SCATTER;
+    }
+}
+
+void fc_log_doubts(FcInstance* instance) {
+    fc_log_scatter(instance, FC_CALL_EXIT_INITIALIZATION_MODE);
     warn_nearly_open(instance);
     for (unsigned i = 0; i < fc_uses_count; i++) {
         warn_unused(instance, &fc_variables[fc_uses[i].setting], &fc_variables[fc_uses[i].decider],

@@ -6,6 +6,9 @@
 
 #include "fmi2/instance.h"
 
-void fc_log_doubts(const FcInstance* instance);
+void fc_log_doubts(FcInstance* instance);
+
+// Once: the settled state that the call has found is chaotic.
+void fc_log_scatter(FcInstance* instance, FcCall call);
 
 #endif

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "fmi2/doubts.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "settled_force.h"
@@ -124,6 +125,7 @@ static bool settled_force(FcInstance* instance, FcVector* force, FcMessage* mess
         if (!fc_settled_force(&instance->contact, &found, message)) {
             return false;
         }
+        fc_log_scatter(instance, FC_CALL_GET_REAL);
         instance->settled_force = found;
         instance->settled_force_of = *now;
     }

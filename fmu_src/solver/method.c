@@ -70,8 +70,9 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
 }
 
 FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
-                            FcVector* force, double* evaluations) {
+                            FcVector* force, double* evaluations, bool* scatters) {
     *force = (FcVector){0.0, 0.0};
+    *scatters = false;
     assert(!fc_drive_is_linear(&scene->drive));
     if (fc_scene_is_loose(scene)) {
         return (FcBristle){0};
@@ -81,7 +82,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     }
     FcStepResult end;
     fc_result_start(&end, from, *evaluations);
-    *force = fc_periods_settled(scene, options, &end);
+    *force = fc_periods_settled(scene, options, &end, scatters);
     *evaluations = end.evaluations;
     // An excess over a bound by rounding would become heat of the first step.
     return fc_reach(scene, fc_bristle_of(&end));

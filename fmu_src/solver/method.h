@@ -38,7 +38,8 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
 // of the vibration, at the phase of its start, or after infinite sliding. The bristle itself if nothing
 // moves. *force [N] becomes the mean of F (solver.h) over a period of the vibration, or over the periods that
 // repeat; without vibration the force of steady sliding. Adds its evaluations to *evaluations.
+// *scatters: the periods do not repeat (periods.h).
 FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
-                            FcVector* force, double* evaluations);
+                            FcVector* force, double* evaluations, bool* scatters);
 
 #endif

@@ -419,7 +419,8 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
     return true;
 }
 
-FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end) {
+FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end,
+                            bool* scatters) {
     const double f = scene->drive.vibration.f;
     if (fc_scene_is_loose(scene)) {
         fc_loose_step(end);
@@ -430,6 +431,7 @@ FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options
         walk_to_repetition(&walk, HUGE_VAL);
         const double cycle = walk.done - walk.met_at;
         if (walk.met_at >= 0.0 && cycle > 0.0) {
+            *scatters = fc_has_static_friction(scene->friction) && !repeats(&walk);
             *end = walk.total;
             if (isfinite(walk.least.delta)) {
                 end->delta = walk.least.delta;

@@ -25,7 +25,8 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
 
 // The limit of the bristle in *end after infinitely many periods of a vibrating scene with held inputs.
 // Returns the mean of F (solver.h) [N] over a period of that state, or over the periods that repeat. Adds its
-// evaluations to end->evaluations.
-FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end);
+// evaluations to end->evaluations. *scatters: static friction lets none repeat, and the mean is that of many.
+FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end,
+                            bool* scatters);
 
 #endif

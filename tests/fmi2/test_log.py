@@ -45,6 +45,22 @@ def test_one_category_at_a_time_and_errors_always(instance: Instance, category: 
     assert whole_life(instance) == {category, "logStatusError"}
 
 
+@pytest.mark.parametrize("initial", [1, 2], ids=["Given", "Settled"])
+@pytest.mark.parametrize("ratio", [1.5, 1.0])
+def test_a_chaotic_settled_state_is_told_once(instance: Instance, ratio: float, initial: int) -> None:
+    """With k = 70 a break-away multiplies an error: 1e-9 of V moves the mean by more than 1e-4."""
+    values = {"friction.staticRatio": ratio, "friction.V_S": 0.22, "V": 0.036, "vibration.V_1": 0.19}
+    values |= {"contact.sigma": 5.2e5, "friction.mu": 0.262, "F_C": 82.0}
+    instance.start({"friction.model": 3, "contact.model": 2, "initialState": initial}, values)
+    means = []
+    for part in range(4):
+        assert instance.set({"V": 0.036 * (1.0 + 1e-9 * part)}) == OK
+        means += instance.get("F_t_settled")
+    told = [message for message in instance.messages if "chaotic" in message.text]
+    assert len(told) == (ratio > 1.0) and all(each.category == "logStatusWarning" for each in told)
+    assert (max(means) - min(means) > 1e-4 * means[0]) == (ratio > 1.0)
+
+
 def test_an_unknown_category_switches_nothing(instance: Instance) -> None:
     assert switch(instance, True, "logEvents", "logNothing") == ERROR
     instance.messages.clear()
