@@ -68,7 +68,7 @@ def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) ->
 @pytest.mark.parametrize("V", [0.005, 1e-12, 1e-15, 1e-17])
 @pytest.mark.parametrize("d", [65e-6, 100e-6, 200e-6])
 def test_a_nearly_open_contact_in_the_plane(fmu: FrictionFmu, d: float, V: float) -> None:
-    """V carries the bristle to its bound, 1e13 m to 1e74 m away, beside which the swing across is rounding."""
+    """V carries the bristle to its bound, 1e13 m to 1e74 m away: the swing across is rounding there."""
     values: dict[str, Value] = {"friction.model": "ElasticPlastic", "vibration.V_2": 0.1, "d": d, "V": V}
     with fmu.session(values) as session:
         assert session.get("F_t_settled") == pytest.approx(F_C, rel=2e-13)
