@@ -150,9 +150,10 @@ static void replay_file(Hunt* hunt) {
 
 static void usage(void) {
     fprintf(stderr,
-            "hunt [--seed S] [--scenes N] [--minutes M] [--plane] [--minimize K]\n"
+            "hunt [--seed S] [--scenes N] [--minutes M] [--plane] [--mass] [--minimize K]\n"
             "     [--climb SECONDS] [--where \"NAME=VALUE ..\"] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
-            "--plane: scenes that slide, or vibrate, across. --minimize: makes K misses plain.\n"
+            "--plane: scenes that slide, or vibrate, across. --mass: a mass on the contact. --minimize: "
+            "makes K misses plain.\n"
             "--climb: keeps the worst scenes and changes these, N at the most. --where: which all have.\n"
             "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
             "line.\n");
@@ -164,11 +165,17 @@ static Options read_options(int argc, char** argv) {
     Options o = {.seed = 1.0, .minutes = INFINITY, .where = ""};
     int kind = ALONG;
     char rest;
-    const struct option names[] = {{"seed", 1, NULL, SEED},       {"scenes", 1, NULL, SCENES},
-                                   {"minutes", 1, NULL, MINUTES}, {"minimize", 1, NULL, MINIMIZE},
-                                   {"climb", 1, NULL, CLIMB},     {"plane", 0, &kind, PLANE},
-                                   {"file", 1, NULL, FILE_NAME},  {"where", 1, NULL, WHERE},
-                                   {"replay", 1, NULL, REPLAY},   {0}};
+    const struct option names[] = {{"seed", 1, NULL, SEED},
+                                   {"scenes", 1, NULL, SCENES},
+                                   {"minutes", 1, NULL, MINUTES},
+                                   {"minimize", 1, NULL, MINIMIZE},
+                                   {"climb", 1, NULL, CLIMB},
+                                   {"plane", 0, &kind, PLANE},
+                                   {"mass", 0, &kind, MASS},
+                                   {"file", 1, NULL, FILE_NAME},
+                                   {"where", 1, NULL, WHERE},
+                                   {"replay", 1, NULL, REPLAY},
+                                   {0}};
     double* const numbers[] = {&o.seed, &o.scenes, &o.minutes, &o.minimize, &o.climb};
     const char** const words[] = {&o.file, &o.where, &o.replay};
     for (int name, index; (name = getopt_long(argc, argv, "", names, &index)) != -1;) {

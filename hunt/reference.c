@@ -100,6 +100,26 @@ static void solve(Real A[STAGES][STAGES], Vector* side) {
     }
 }
 
+// The same of a step of Newton's, which needs no more digits than a double has.
+enum { UNKNOWNS = 2 * STAGES };
+static void solve_roughly(double A[UNKNOWNS][UNKNOWNS], double side[UNKNOWNS]) {
+    for (int k = 0; k < UNKNOWNS; k++) {
+        for (int i = k + 1; i < UNKNOWNS; i++) {
+            const double factor = A[i][k] / A[k][k];
+            side[i] -= factor * side[k];
+            for (int j = k + 1; j < UNKNOWNS; j++) {
+                A[i][j] -= factor * A[k][j];
+            }
+        }
+    }
+    for (int k = UNKNOWNS - 1; k >= 0; k--) {
+        for (int j = k + 1; j < UNKNOWNS; j++) {
+            side[k] -= A[k][j] * side[j];
+        }
+        side[k] /= A[k][k];
+    }
+}
+
 // ---- The contact ----
 
 // The factors of F_n and sigma before their powers of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
@@ -166,6 +186,7 @@ typedef struct {
     Real d, d_rate;
     Vector swing;
     Real h, omega, decay, swell, excess;
+    Real m;         // kg, the mass that moves along; 0 if there is none, or while a bristle jumps or settles
     Real cycle;     // 1, the part of a period before the start
     AtModulus held; // at the modulus of the start
     bool elastic;   // the law is ElasticPlastic
@@ -326,6 +347,17 @@ static At scene_at(const World* w, Real t) {
     return at;
 }
 
+// The force on the mass [N].
+static Real push_at(const World* w, Real t) { return (Real)w->scene.F + w->scene.F_rate * t; }
+
+// The velocity that the mass has gained since the start of the step [m/s], and its acceleration [m/s2] move the scene.
+static At moved_at(const World* w, Real t, Real gained, Real acceleration) {
+    World there = *w;
+    there.rate += acceleration;
+    there.start += gained - acceleration * t;
+    return scene_at(&there, t);
+}
+
 // ---- The step ----
 
 // Mean of the limit over a period of the vibration with the inputs of a time [N].
@@ -341,7 +373,11 @@ static Real fastest(Real V, Real rate, Real swing, Real h) {
 }
 
 static World make_world(const ReferenceScene* scene, Real h, int fineness) {
-    World w = {.scene = *scene, .h = h, .fineness = fineness, .elastic = scene->law == LAW_ELASTIC_PLASTIC};
+    World w = {.scene = *scene,
+               .h = h,
+               .m = scene->m,
+               .fineness = fineness,
+               .elastic = scene->law == LAW_ELASTIC_PLASTIC};
     w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
     w.excess = scene->law == LAW_LUGRE || w.elastic ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
@@ -352,10 +388,11 @@ static World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.x = scene->V_1 * direction(w.cycle);
     w.y = scene->V_2 * direction(w.cycle + scene->phase_2 / (2.0L * PI));
     w.swing = scene->a_d * direction(w.cycle + scene->phase_d / (2.0L * PI));
-    w.start = CMPLXL(scene->V, scene->V_y) + vibration(&w, 1.0L);
+    const Real V = (Real)scene->V + (scene->m > 0.0 ? scene->v_0 : 0.0);
+    w.start = CMPLXL(V, scene->V_y) + vibration(&w, 1.0L);
     w.rate = CMPLXL(scene->V_rate, scene->V_y_rate);
-    w.top = hypotl(fastest(scene->V, scene->V_rate, scene->V_1, h),
-                   fastest(scene->V_y, scene->V_y_rate, scene->V_2, h));
+    w.top =
+        hypotl(fastest(V, scene->V_rate, scene->V_1, h), fastest(scene->V_y, scene->V_y_rate, scene->V_2, h));
     w.decay = (Real)scene->lambda / scene->R_q;
     w.swell = bessel_I0(w.decay * scene->a_d);
     w.held = at_modulus(scene, scene->E);
@@ -386,6 +423,8 @@ typedef struct {
     Vector change;         // m, of delta: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
+    Real gained;           // m/s, what the mass has gained since the start of the step, at the end
+    Real moved;            // m, its time integral
     Real length;           // m, the scale of errors of delta
     Real blur;             // m, of delta by the rounding of time
 } Sums;
@@ -395,11 +434,13 @@ static void add_times(Sums* sums, const Sums* one, Real factor) {
     sums->work += factor * one->work;
     sums->heat += factor * one->heat;
     sums->path += factor * one->path;
+    sums->moved += factor * one->moved;
 }
 
 static void add(Sums* sums, const Sums* part) {
     add_times(sums, part, 1.0L);
     sums->end = part->end;
+    sums->gained = part->gained;
     sums->change += part->change;
     sums->length = part->length;
     sums->blur = part->blur;
@@ -436,19 +477,24 @@ static Real outward(const World* w, const At* at, Vector delta) {
 
 // The motion continues as long as both signs are positive. A sign is INFINITY if it cannot end the motion.
 typedef struct {
-    Real room; // m, to the bound
+    Real room; // m, to the bound; N of Coulomb's stick, to the limit
     Real lead; // m/s, outward
+    Real turn; // of a mass: its velocity where it slides [m/s]; its inertia over m where a bristle slips
 } Signs;
 
 static const Real ROUNDING = 1e-17L; // of the terms of a sign
 static const Real ON_BOUND =
     1e-10L; // of a bound: the rounding of a phase may leave a bristle that slips so far inside
 static const Real AS_DOUBLE = 1e-15L; // of a bound: the rounding of a deflection that is a double
+static const Real AT_REST =
+    4e-15L; // of the largest |V|: that of the velocity of a mass, and of a vibration's phase
 
 // The bristle between two marches. Inside its bound it follows its law, if it has broken away until it catches up.
 typedef struct {
     Vector delta; // m
     bool broke;   // with static friction: it has broken away, and slips or catches up
+    Real gained;  // m/s, what the mass has gained since the start of the step
+    int side;     // of a mass: the sign of V in the law, 0 if Coulomb's sticks
 } State;
 
 // The state of a march through the step.
@@ -461,23 +507,60 @@ typedef struct {
     Real from;     // its last motion came to its end after this time,
     Real met_at;   // then,
     bool at_bound; // at its bound, not by its lead
+    bool turned;   // with a mass: V has turned back
 } March;
 
 static bool has_bound(const World* w) { return w->bounded && !w->open; }
 static bool has_curve(const World* w) { return w->excess + w->ln_rate.ratio != 0.0L; }
 static bool has_static(const World* w) { return w->elastic && has_curve(w); }
 
+// Whether a mass is at rest on Coulomb's friction.
+static bool sticks(const March* march) {
+    return march->w->m > 0.0L && march->w->scene.law == LAW_COULOMB && march->state.side == 0;
+}
+
+// What a mass at rest on Coulomb's friction leaves to it [N]: the force on the mass less what moves it with V.
+static Real held_force(const World* w, Real t) {
+    Vector V[2];
+    velocities(w, t, 1, V);
+    return push_at(w, t) + w->m * creall(V[1]);
+}
+
+// The slope by V [m s/m, s] of the bound of a bristle, or of the force g, along Stribeck's curve; 0 without one.
+static Real curve_slope(const World* w, const At* at) {
+    return w->excess == 0.0L
+               ? 0.0L
+               : -2.0L * creall(at->V) / ((Real)w->scene.V_S * w->scene.V_S) * (at->g - at->coulomb);
+}
+
+// The mass [kg] with what a bristle that slips adds by its damping, as its bound moves with V. At 0 V jumps.
+static const Real AT_JUMP = 1e-4L;
+static Real inertia(const World* w, const At* at, Vector delta) {
+    return w->m + w->scene.sigma_1 * copysignl(1.0L, creall(delta)) * curve_slope(w, at) / at->sigma;
+}
+
 // Each sign has a slack of little more than its rounding.
-static Signs signs_at(const March* march, const At* at, Vector delta) {
+static Signs signs_at(const March* march, const At* at, Real t, Vector delta) {
     const World* w = march->w;
-    Signs signs = {INFINITY, INFINITY};
+    Signs signs = {INFINITY, INFINITY, INFINITY};
+    if (sticks(march)) {
+        signs.room = at->coulomb * (1.0L + ROUNDING) - fabsl(held_force(w, t));
+    } else if (w->m > 0.0L && w->elastic) {
+        signs.turn =
+            march->slips && w->scene.sigma_1 != 0.0 ? inertia(w, at, delta) / w->m - AT_JUMP : INFINITY;
+    } else if (w->m > 0.0L) {
+        signs.turn = march->state.side * creall(at->V) + ROUNDING * (w->top + w->S * w->h / w->m);
+    }
     if (!has_bound(w)) {
         return signs;
     }
     if (!march->slips) {
         // on a ramp in which nothing moves the deflection is a double
         const Real slack = w->ramp && has_static(w) && !march->state.broke ? 1e-11L : ROUNDING;
-        signs.room = (march->state.broke ? at->D : at->D_static) * (1.0L + slack) - length_of(delta);
+        // smooth where delta is 0
+        const Real D = (march->state.broke ? at->D : at->D_static) * (1.0L + slack),
+                   length = length_of(delta);
+        signs.room = (D - length) * (0.5L + 0.5L * length / D);
     }
     if (!march->slips && march->state.broke && w->ramp) {
         signs.lead = w->pushed ? INFINITY : dot(along(delta, 1.0L), at->input);
@@ -490,6 +573,7 @@ static Signs signs_at(const March* march, const At* at, Vector delta) {
 typedef struct {
     Sums sums;
     Signs sign[STAGES + 1]; // at the start and at the nodes
+    Real V[STAGES + 1];     // m/s
 } Panel;
 
 // That direction, turned by an angle [rad].
@@ -533,6 +617,131 @@ static bool collocate(const World* w, const At* at, Real size, Vector delta, boo
     return false;
 }
 
+// ---- A mass on the contact: m v' = F - F_t, along a line ----
+
+// Adds to the rate of a bound that moves with V what the acceleration of the mass adds.
+static void accelerate(const World* w, At* at, Real t, Real delta, bool slips) {
+    const Real by_V = has_static(w) ? curve_slope(w, at) / at->sigma : 0.0L, V = creall(at->V);
+    const Real sigma_1 = w->scene.sigma_1, n = slips ? copysignl(1.0L, delta) : 0.0L;
+    const Real force = at->sigma * delta + w->scene.sigma_2 * V + sigma_1 * (slips ? n * at->D_rate : V);
+    at->D_rate += by_V * (push_at(w, t) - force) / (slips ? inertia(w, at, delta) : w->m);
+}
+
+// The scene of a state.
+static At at_state(const World* w, Real t, State state, bool slips) {
+    At at = moved_at(w, t, state.gained, 0.0L);
+    if (w->m > 0.0L && !w->open && w->scene.law != LAW_COULOMB) {
+        accelerate(w, &at, t, creall(state.delta), slips);
+    }
+    return at;
+}
+
+// The law at a node. The sign of V in it is that of the motion, so all is smooth.
+typedef struct {
+    Real rate, rate_by_delta, rate_by_V;    // m/s, 1/s, 1
+    Real force, force_by_delta, force_by_V; // N, N/m, N s/m, without sigma_1
+} Law;
+
+static Law law_at(const March* march, const At* at, bool bristle, bool slips, Real delta) {
+    const World* w = march->w;
+    const Real V = creall(at->V), sigma_2 = w->scene.sigma_2, slope = curve_slope(w, at);
+    if (!bristle) {
+        const Real coulomb = w->scene.law == LAW_COULOMB ? at->coulomb : 0.0L;
+        return (Law){.force = march->state.side * coulomb + sigma_2 * V, .force_by_V = sigma_2};
+    }
+    if (slips) { // the deflection less the bound, in place of a rate
+        const Real n = copysignl(1.0L, delta), by_V = w->elastic ? slope / at->sigma : 0.0L;
+        return (Law){n * at->D, 0.0L, n * by_V, at->sigma * delta + sigma_2 * V, at->sigma, sigma_2};
+    }
+    const Real r = w->elastic ? 0.0L : at->sigma * march->state.side / at->g;
+    return (Law){.rate = V - r * V * delta,
+                 .rate_by_delta = -r * V,
+                 .rate_by_V = 1.0L - r * delta * (1.0L - V * slope / at->g),
+                 .force = at->sigma * delta + sigma_2 * V,
+                 .force_by_delta = at->sigma,
+                 .force_by_V = sigma_2};
+}
+
+// At the nodes the scene, the change of delta and the velocity gained, by Newton from none. Returns false if that does not
+// converge.
+static bool collocate_mass(const March* march, const Real t[STAGES], Real size, State from, At at[STAGES],
+                           Vector change[STAGES], Real gained[STAGES]) {
+    const World* w = march->w;
+    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->slips;
+    const Real sigma_1 = bristle ? w->scene.sigma_1 : 0.0L, delta = creall(from.delta);
+    Real length = 0.0L, last = INFINITY;
+    for (int i = 0; i < STAGES; i++) {
+        gained[i] = from.gained;
+        if (sticks(march)) {
+            at[i] = scene_at(w, t[i]);
+            gained[i] = -creall(at[i].V);
+            at[i].V = 0.0L;
+        }
+    }
+    for (int k = 0; k < 40 && !sticks(march); k++) {
+        double A[UNKNOWNS][UNKNOWNS] = {{0.0}}, rough[UNKNOWNS];
+        Real step[UNKNOWNS];
+        for (int i = 0; i < STAGES; i++) {
+            step[i] = -creall(change[i]);
+            step[STAGES + i] = -w->m * (gained[i] - from.gained) - sigma_1 * creall(change[i]);
+            A[i][i] = 1.0;
+            A[STAGES + i][i] = (double)sigma_1;
+            A[STAGES + i][STAGES + i] = (double)w->m;
+        }
+        for (int j = 0; j < STAGES; j++) {
+            at[j] = moved_at(w, t[j], gained[j], 0.0L);
+            const Law law = law_at(march, &at[j], bristle, slips, delta + creall(change[j]));
+            length = bristle ? fmaxl(length, at[j].g / at[j].sigma) : 1.0L;
+            for (int i = 0; i < STAGES; i++) {
+                const Real weight = size * the_rule()->to[i][j], direct = slips ? (Real)(i == j) : weight;
+                step[i] += direct * (law.rate - (slips ? delta : 0.0L));
+                step[STAGES + i] += weight * (push_at(w, t[j]) - law.force);
+                A[i][j] -= (double)(direct * law.rate_by_delta);
+                A[i][STAGES + j] -= (double)(direct * law.rate_by_V);
+                A[STAGES + i][j] += (double)(weight * law.force_by_delta);
+                A[STAGES + i][STAGES + j] += (double)(weight * law.force_by_V);
+            }
+        }
+        for (int i = 0; i < UNKNOWNS; i++) {
+            rough[i] = (double)step[i];
+        }
+        solve_roughly(A, rough);
+        Real most = 0.0L;
+        for (int i = 0; i < STAGES; i++) {
+            change[i] += rough[i];
+            gained[i] += rough[STAGES + i];
+            const Real speed = w->S * size / w->m + 1e-8L * (w->top + fabsl(gained[i]));
+            most = fmaxl(most, fmaxl(fabs(rough[i]) / length, fabs(rough[STAGES + i]) / speed));
+        }
+        if (most < 1e-11L || (most < 1e-7L && most >= 0.1L * last)) { // the next is its square, or rounding
+            return true;
+        }
+        if (!(most < 1e6L)) {
+            return false;
+        }
+        last = most;
+    }
+    return sticks(march);
+}
+
+// The motion that begins: the sign of V, or of V soon if it is 0.
+static void choose_side(March* march, Real t) {
+    const World* w = march->w;
+    if (w->m == 0.0L) {
+        return;
+    }
+    const At at = moved_at(w, t, march->state.gained, 0.0L);
+    const Real V = creall(at.V), force = held_force(w, t);
+    const bool coulomb = w->scene.law == LAW_COULOMB;
+    const Real soon = coulomb ? force : force - (w->open ? 0.0L : at.sigma * creall(march->state.delta));
+    const bool rests = fabsl(V) <= AT_REST * w->top || march->turned;
+    march->state.side = !rests                                  ? (V > 0.0L ? 1 : -1)
+                        : coulomb && fabsl(force) <= at.coulomb ? 0
+                        : march->turned && !coulomb             ? -march->state.side
+                                                                : (soon >= 0.0L ? 1 : -1);
+    march->turned = false;
+}
+
 // Coulomb's force. At the end of a panel V may be 0 but for rounding: it comes there against its rate.
 static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
     Vector V[2] = {at->V};
@@ -543,42 +752,54 @@ static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
     return along(V[0], at->coulomb);
 }
 
-static Panel panel(const March* march, Real a, Real b, Vector delta) {
+static Panel panel(const March* march, Real a, Real b, State from) {
     enum { last = STAGES - 1 };
     World* w = march->w;
     const Rule* rule = the_rule();
     const Real size = b - a;
-    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->slips;
+    const Vector delta = from.delta;
+    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->slips, moves = w->m > 0.0L;
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
     Vector change[STAGES] = {0.0L};
+    Real times[STAGES], gained[STAGES] = {0.0L};
     w->panels += 1.0L;
     for (int i = 0; i < STAGES; i++) {
-        at[i] = scene_at(w, a + size * rule->node[i + 1]);
+        times[i] = a + size * rule->node[i + 1];
+        at[i] = scene_at(w, times[i]);
     }
-    if (bristle && !collocate(w, at, size, delta, slips, change)) {
+    if (moves ? !collocate_mass(march, times, size, from, at, change, gained)
+              : bristle && !collocate(w, at, size, delta, slips, change)) {
         p.sums.end = (Real)NAN; // agrees with nothing
         return p;
     }
     Real relaxed = 0.0L, fastest = 0.0L;
     for (int i = 0; i < STAGES; i++) {
-        const Real t = a + size * rule->node[i + 1];
+        const Real t = times[i];
         Vector rate = 0.0L, spring = 0.0L;
-        if (slips) {
+        if (slips && !moves) {
             change[i] = turned(along(delta, at[i].D), creall(change[i])) - delta;
         }
         const Vector now = delta + change[i];
+        if (moves && bristle) {
+            accelerate(w, &at[i], t, creall(now), slips);
+        }
         if (bristle) {
             rate = rate_of(w, &at[i], now, slips);
             spring = at[i].sigma * now;
             relaxed += slips ? 0.0L : size * rule->weight[i] * relaxation(w, &at[i]);
             fastest = fmaxl(fastest, length_of(rate));
         } else if (w->scene.law == LAW_COULOMB) {
-            spring = coulomb_force(w, &at[i], t, i == last);
+            spring = sticks(march) ? held_force(w, t)
+                     : moves       ? march->state.side * at[i].coulomb
+                                   : coulomb_force(w, &at[i], t, i == last);
         }
         account(w, &p.sums, spring, rate, at[i].V, size * rule->weight[i]);
-        p.sign[i + 1] = signs_at(march, &at[i], now);
+        p.sums.moved += size * rule->weight[i] * gained[i];
+        p.sign[i + 1] = signs_at(march, &at[i], t, now);
+        p.V[i + 1] = creall(at[i].V);
     }
+    p.sums.gained = gained[last];
     if (bristle) {
         p.sums.change = change[last];
         p.sums.end = delta + change[last];
@@ -586,8 +807,9 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         p.sums.length = fmaxl(length_of(p.sums.end), at[last].g / at[last].sigma);
         p.sums.impulse += w->scene.sigma_1 * p.sums.change;
     }
-    const At first = scene_at(w, a);
-    p.sign[0] = signs_at(march, &first, delta);
+    const At first = at_state(w, a, from, slips);
+    p.sign[0] = signs_at(march, &first, a, delta);
+    p.V[0] = creall(first.V);
     return p;
 }
 
@@ -623,7 +845,9 @@ static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
 }
 
 // Whether the motion is over at node k; 0 is the start.
-static bool is_over(const Panel* p, int k) { return p->sign[k].lead < 0.0L || p->sign[k].room < 0.0L; }
+static bool is_over(const Panel* p, int k) {
+    return p->sign[k].lead < 0.0L || p->sign[k].room < 0.0L || p->sign[k].turn < 0.0L;
+}
 
 // Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
@@ -631,7 +855,15 @@ static bool hides(const World* w, const Panel* p) {
     for (int k = 0; k + 2 <= STAGES && !is_over(p, k + 2); k++) {
         const Signs* s = &p->sign[k];
         if (dips(&x[k], s[0].room, s[1].room, s[2].room, of_room) ||
-            dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead)) {
+            dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead) ||
+            dips(&x[k], s[0].turn, s[1].turn, s[2].turn, of_lead)) {
+            return true;
+        }
+    }
+    // A mass may pass Stribeck's curve between two nodes.
+    for (int k = 0; k < STAGES && w->m > 0.0L && has_curve(w); k++) {
+        const Real slow = fminl(fabsl(p->V[k]), fabsl(p->V[k + 1])), V_S = w->scene.V_S;
+        if (slow < 7.0L * V_S && fabsl(p->V[k + 1] - p->V[k]) > 0.5L * V_S) {
             return true;
         }
     }
@@ -640,12 +872,30 @@ static bool hides(const World* w, const Panel* p) {
 
 static Real beyond(const void* context, Real t) {
     const March* march = context;
-    const Panel p = panel(march, march->from, t, march->state.delta);
-    return is_over(&p, STAGES) ? 1.0L : -1.0L;
+    const Panel p = panel(march, march->from, t, march->state);
+    const Signs s = p.sign[STAGES];
+    return -fminl(s.room, fminl(s.lead, s.turn));
+}
+
+// Draws low and high together about a crossing by secants, for crossing() to end.
+static void narrow(Function* function, const void* context, Real* low, Real* high) {
+    Real at_low = function(context, *low), at_high = function(context, *high);
+    for (int k = 0; k < 20 && at_low < 0.0L && at_high > 0.0L && isfinite(at_high - at_low); k++) {
+        const Real width = *high - *low, margin = ldexpl(width, k % 3 == 2 ? -1 : -12);
+        const Real secant = *low - width * at_low / (at_high - at_low);
+        const Real x = fminl(fmaxl(secant + (k % 2 ? margin : -margin), *low + margin), *high - margin);
+        const Real at = function(context, x);
+        if (!(x > *low && x < *high) || isnan(at)) {
+            return;
+        }
+        *(at > 0.0L ? high : low) = x;
+        *(at > 0.0L ? &at_high : &at_low) = at;
+    }
 }
 
 // Takes an accurate panel, up to the motion's end if that lies in it; returns whether it does.
 static bool commit(March* march, Real a, Real b, const Panel* p) {
+    const World* w = march->w;
     int k = 0;
     while (k <= STAGES && !is_over(p, k)) {
         k++;
@@ -653,17 +903,24 @@ static bool commit(March* march, Real a, Real b, const Panel* p) {
     Panel part = *p;
     if (k <= STAGES) {
         march->from = a;
-        const Real *x = the_rule()->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
-        march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
+        const Real* x = the_rule()->node;
+        Real low = a + (b - a) * x[k < 2 ? 0 : k - 1], high = a + (b - a) * x[k];
+        if (w->m > 0.0L && k > 1) {
+            narrow(beyond, march, &low, &high);
+        }
+        march->met_at = k == 0 ? a : crossing(beyond, march, low, high);
         march->at_bound = p->sign[0].room < 0.0L;
+        march->turned = p->sign[0].turn < 0.0L;
         if (!(march->met_at > a)) {
             return true;
         }
-        part = panel(march, a, march->met_at, march->state.delta);
+        part = panel(march, a, march->met_at, march->state);
         march->at_bound = part.sign[STAGES].room < 0.0L;
+        march->turned = part.sign[STAGES].turn < 0.0L;
     }
     add(&march->sums, &part.sums);
     march->state.delta = part.sums.end;
+    march->state.gained = part.sums.gained;
     return k <= STAGES;
 }
 
@@ -715,11 +972,19 @@ static bool catches(const World* w, const At* at, Vector delta, bool pushed) {
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
     march->slips = false;
+    choose_side(march, a);
     if (!has_bound(w)) {
         march->state.broke = false;
         return;
     }
-    const At at = scene_at(w, a), later = scene_at(w, a + ldexpl(b - a, -20));
+    const Real soon = ldexpl(b - a, -20);
+    const At at = at_state(w, a, march->state, true);
+    State then = march->state;
+    if (w->m > 0.0L) {
+        const Real damping = w->scene.sigma_1 + w->scene.sigma_2;
+        then.gained += (push_at(w, a) - at.sigma * creall(then.delta) - damping * creall(at.V)) / w->m * soon;
+    }
+    const At later = at_state(w, a + soon, then, true);
     const Real D = march->state.broke ? at.D : at.D_static, length = length_of(march->state.delta);
     if (length > D && length < (1.0L + 10.0L * AS_DOUBLE) * D) {
         march->state.delta = along(march->state.delta, D); // it is beyond by its rounding alone
@@ -737,26 +1002,56 @@ static void begin(March* march, Real a, Real b) {
     march->slipped = march->slipped || march->slips || march->state.broke;
 }
 
-// Break-away: the bristle drops along its direction, and its damping adds an impulse.
-static void break_away(March* march, const At* at) {
+// Break-away: the bristle drops along its direction, and its damping adds an impulse, which a mass takes up: at once m V +
+// sigma_1 delta stays. `kick` [m/s] leads off from the bound where V jumps along it.
+static void break_away(March* march, At* at, Real kick) {
     const World* w = march->w;
-    const Vector from = march->state.delta, to = along(from, at->D);
+    const Vector from = march->state.delta;
+    Vector to = along(from, at->D);
+    if (w->m > 0.0L && w->scene.sigma_1 != 0.0) {
+        const Real gained = march->state.gained;
+        for (int k = 0; k < 10000; k++) { // to the bound at the velocity after the drop
+            march->state.gained =
+                gained + w->scene.sigma_1 / w->m * creall(from - to) + (k == 0 ? kick : 0.0L);
+            *at = at_state(w, march->met_at, march->state, true);
+            to = along(from, at->D);
+        }
+        at->V -= 0.5L * (march->state.gained - gained); // the mean, for the work
+    }
     const Vector damping = w->scene.sigma_1 * (to - from);
     const Real lost = dot(from - to, from + to);
     march->sums.impulse += damping;
     march->sums.work += dot(damping, at->V);
     march->sums.heat += dot(damping, at->V) + 0.5L * at->sigma * lost;
-    march->state = (State){to, true};
+    march->state.delta = to;
+    march->state.broke = true;
 }
 
 // The motion after the end of another.
 static void change_motion(March* march) {
     const World* w = march->w;
-    const At at = scene_at(w, march->met_at);
+    if (march->turned && w->elastic) {
+        At at = at_state(w, march->met_at, march->state, true);
+        const Real force = at.sigma * creall(march->state.delta) + w->scene.sigma_2 * creall(at.V);
+        const Real push = push_at(w, march->met_at) - force;
+        march->turned = false;
+        break_away(march, &at, copysignl(1e-3L * w->scene.V_S, push));
+        at = at_state(w, march->met_at, march->state, true);
+        march->slips = outward(w, &at, march->state.delta) > 0.0L;
+        march->state.broke = march->slips;
+        return;
+    }
+    if (march->turned || sticks(march)) {
+        march->turned = true;
+        choose_side(march, march->met_at);
+        return;
+    }
+    At at = at_state(w, march->met_at, march->state, march->slips || march->at_bound);
     march->slips = false;
     if (march->at_bound) {
         if (has_static(w) && !march->state.broke) {
-            break_away(march, &at);
+            break_away(march, &at, 0.0L);
+            at = at_state(w, march->met_at, march->state, true);
         } else {
             march->state.delta = along(march->state.delta, at.D);
         }
@@ -773,9 +1068,12 @@ static void march_between(March* march, Real a, Real b) {
     Real end = b;
     while (a < b && w->panels <= MOST_PANELS) {
         const Real middle = 0.5L * (a + end);
-        const Panel one = panel(march, a, end, march->state.delta);
-        const Panel left = panel(march, a, middle, march->state.delta);
-        const Panel right = panel(march, middle, end, left.sums.end);
+        State half = march->state;
+        const Panel one = panel(march, a, end, march->state);
+        const Panel left = panel(march, a, middle, march->state);
+        half.delta = left.sums.end;
+        half.gained = left.sums.gained;
+        const Panel right = panel(march, middle, end, half);
         Sums two = left.sums;
         add(&two, &right.sums);
         const bool good = agree(w, &one.sums, &two, end - a) && !hides(w, &left) && !hides(w, &right);
@@ -833,7 +1131,7 @@ static void march_part(March* march, Real from, Real to, bool open) {
         if (a == from) {
             begin(march, a, b);
         }
-        march_piece(march, a, b, 3);
+        march_piece(march, a, b, w->m > 0.0L ? 0 : 3);
         a = b;
     }
 }
@@ -842,7 +1140,8 @@ static void march_part(March* march, Real from, Real to, bool open) {
 static Real release(const World* w, State* state) {
     const bool slides = w->scene.contact == CONTACT_CONSTANT && w->scene.law != LAW_COULOMB;
     const Real heat = slides ? 0.5L * w->scene.contact_sigma * dot(state->delta, state->delta) : 0.0L;
-    *state = (State){0};
+    state->delta = 0.0L;
+    state->broke = false;
     return heat;
 }
 
@@ -865,6 +1164,7 @@ static World ramp_between(const World* from, const World* to) {
     ReferenceScene* s = &w.scene;
     const ReferenceScene* end = &to->scene;
     w.ramp = true;
+    w.m = 0.0L;
     w.h = 1.0L;
     w.top = 0.0L;
     s->input = INPUT_SEPARATION;
@@ -896,7 +1196,7 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
     }
     if (before != NULL) {
         World ramp = ramp_between(&past, w);
-        const At after = scene_at(w, 0.0L);
+        const At after = at_state(w, 0.0L, *state, true);
         ramp.pushed = outward(w, &after, state->delta) > 0.0L;
         const At begin = scene_at(&ramp, 0.0L), end = scene_at(&ramp, 1.0L);
         ramp.S = fmaxl(w->S, begin.sigma * length_of(state->delta));
@@ -913,7 +1213,7 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         state->broke = state->broke && !(length_of(state->delta) < (1.0L - ON_BOUND) * begin.D &&
                                          end.D > (1.0L + ON_BOUND) * begin.D);
         const March march = march_from(&ramp, *state);
-        *state = (State){march.state.delta, march.state.broke && has_static(w)};
+        *state = (State){.delta = march.state.delta, .broke = march.state.broke && has_static(w)};
         return march.sums.heat;
     }
     const At at = scene_at(w, 0.0L);
@@ -921,7 +1221,7 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
     if (length <= (1.0L + 1e-11L) * (state->broke ? at.D : at.D_static)) {
         return 0.0L;
     }
-    *state = (State){along(state->delta, at.D), has_static(w)};
+    *state = (State){.delta = along(state->delta, at.D), .broke = has_static(w)};
     return 0.5L * at.sigma * (length - at.D) * (length + at.D);
 }
 
@@ -942,7 +1242,7 @@ static Map find_map(const World* w, Real unit) {
     World free = *w; // of a period that touches no bound
     free.bounded = false;
     for (int k = 0; k < 4; k++) {
-        const March march = march_from(&free, (State){unit * at[k], false});
+        const March march = march_from(&free, (State){.delta = unit * at[k]});
         const Sums* s = &march.sums;
         shift = k == 0 ? (1.0L / unit * s->change) : shift;
         way[k] = creall(s->change) / unit;
@@ -1012,7 +1312,7 @@ static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
     bool rises = true; // to the first power that is too high
     for (int k = 0; k >= 0; k += rises ? 1 : -1) {
         Sums after = *sums;
-        const State to = {after_untouched(p, k, state->delta, &after), false};
+        const State to = {.delta = after_untouched(p, k, state->delta, &after)};
         const Real then = passed + ldexpl(1.0L, k);
         const bool fits = then <= fminl(n, FOR_EVER) && (!w->bounded || !march_from(w, to).slipped);
         if (fits) {
@@ -1022,7 +1322,7 @@ static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
         }
         rises = rises && fits && k + 1 < POWERS;
     }
-    *state = (State){after_untouched(p, 0, state->delta, sums), false};
+    *state = (State){.delta = after_untouched(p, 0, state->delta, sums)};
     return passed;
 }
 
@@ -1049,8 +1349,8 @@ static Vector newton_step(World* w, State state, Vector end, Real unit) {
     const Real drift = length_of(CMPLXL(w->scene.V, w->scene.V_y)) / w->scene.f;
     const Real step = 1e-3L * (w->elastic ? fminl(drift, unit) : unit);
     const Vector x = state.delta - step, y = state.delta - CMPLXL(0.0L, step), miss = end - state.delta;
-    const Vector by_x = 1.0L / step * (end - march_from(w, (State){x, false}).state.delta);
-    const Vector by_y = 1.0L / step * (end - march_from(w, (State){y, false}).state.delta);
+    const Vector by_x = 1.0L / step * (end - march_from(w, (State){.delta = x}).state.delta);
+    const Vector by_y = 1.0L / step * (end - march_from(w, (State){.delta = y}).state.delta);
     // of the columns 1 - by_x and i - by_y, by Cramer's rule
     const Vector a = 1.0L - by_x, b = CMPLXL(0.0L, 1.0L) - by_y;
     return CMPLXL(dot(across(b), miss), -dot(across(a), miss)) / dot(across(b), a);
@@ -1133,6 +1433,7 @@ static bool go_periods(const World* of, State* state, Real n, bool newton, Sums*
 // To the periodic state of held inputs, w of one period, or to sliding for ever; the mean force.
 static bool settle(World* w, State* state, Vector* mean) {
     const ReferenceScene* s = &w->scene;
+    w->m = 0.0L; // at the velocity that the mass has
     if (vibrates(s) || is_open(w, 0.0L) || s->law == LAW_COULOMB) {
         Sums sums = {0};
         const bool drifts = s->V != 0.0 || s->V_y != 0.0, swings = s->V_1 != 0.0 || s->V_2 != 0.0;
@@ -1141,7 +1442,7 @@ static bool settle(World* w, State* state, Vector* mean) {
     }
     const At at = scene_at(w, 0.0L);
     if (length_of(at.V) > 0.0L) {
-        *state = (State){along(at.V, at.g / at.sigma), has_static(w)};
+        *state = (State){.delta = along(at.V, at.g / at.sigma), .broke = has_static(w)};
     }
     *mean = at.sigma * state->delta + s->sigma_2 * at.V;
     return true;
@@ -1153,7 +1454,8 @@ static bool settle(World* w, State* state, Vector* mean) {
 static World held_world(const World* w, Real h) {
     World held = *w;
     ReferenceScene* s = &held.scene;
-    s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
+    s->V += s->m > 0.0 ? s->v_0 : 0.0;
+    s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = s->F_rate = 0.0;
     held.rate = 0.0L;
     held.d_rate = 0.0L;
     held.h = h;
@@ -1176,7 +1478,10 @@ static Vector force_at(const World* w, Real t, State state) {
     const ReferenceScene* s = &w->scene;
     World there = *w;
     there.open = is_open(w, t);
-    const At at = scene_at(&there, t);
+    const At at = at_state(&there, t, state, state.broke);
+    if (w->m > 0.0L && s->law == LAW_COULOMB && length_of(at.V) <= AT_REST * w->top) {
+        return fminl(fmaxl(held_force(w, t), -at.coulomb), at.coulomb);
+    }
     if (s->law == LAW_COULOMB || there.open) {
         return along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L) + s->sigma_2 * at.V;
     }
@@ -1193,7 +1498,8 @@ static bool is_held(const ReferenceScene* s) {
 }
 
 static State start_of(const ReferenceScene* s) {
-    return s->law == LAW_COULOMB ? (State){0} : (State){CMPLXL(s->delta_0, s->delta_y_0), s->slips != 0};
+    return s->law == LAW_COULOMB ? (State){0}
+                                 : (State){.delta = CMPLXL(s->delta_0, s->delta_y_0), .broke = s->slips != 0};
 }
 
 // Takes the step; returns false if it needs more panels or cycles than the reference takes.
@@ -1201,7 +1507,7 @@ static bool advance(World* w, State* state, Sums* sums) {
     const ReferenceScene* s = &w->scene;
     World rest = *w;
     bool known = true;
-    if (is_held(s) && vibrates(s) && w->h * s->f > 4.0L) {
+    if (is_held(s) && vibrates(s) && w->h * s->f > 4.0L && w->m == 0.0L) {
         World period = *w;
         Vector unused;
         period.h = 1.0L / s->f;
@@ -1235,9 +1541,11 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     const Vector start = force_at(&held, 0.0L, seen);
     result->known = advance(&w, &state, &sums) && result->known;
     const Vector force = force_at(&w, w.h, state), mean = 1.0L / w.h * sums.impulse;
-    const Real results[RESULTS] = {creall(force), cimagl(force),       creall(mean),       cimagl(mean),
-                                   creall(start), cimagl(start),       sums.work,          sums.heat,
-                                   state.broke,   creall(state.delta), cimagl(state.delta)};
+    const Real v_0 = scene->v_0, s_0 = scene->x_0 + v_0 * scene->h;
+    const Real results[RESULTS] = {creall(force),      cimagl(force),    creall(mean), cimagl(mean),
+                                   creall(start),      cimagl(start),    sums.work,    sums.heat,
+                                   v_0 + state.gained, s_0 + sums.moved, state.broke,  creall(state.delta),
+                                   cimagl(state.delta)};
     for (int k = 0; k < RESULTS; k++) {
         result->result[k] = (double)results[k];
     }

@@ -28,7 +28,8 @@ enum { START_GIVEN = 1, START_SETTLED = 2 };
     X(staticRatio, friction.staticRatio) X(V_S, friction.V_S) X(sigma_1, friction.sigma_1) \
     X(sigma_2, friction.sigma_2) X(delta_0, delta_0) X(contact_sigma, contact.sigma) \
     X(stiffnessScale, contact.stiffnessScale) X(R_q, contact.R_q) X(R, contact.R) X(eta, contact.eta) \
-    X(A_n, contact.A_n) X(nu, contact.nu) X(Y, contact.Y) X(c, contact.c) X(lambda, contact.lambda)
+    X(A_n, contact.A_n) X(nu, contact.nu) X(Y, contact.Y) X(c, contact.c) X(lambda, contact.lambda) \
+    X(m, body.m) X(F, body.F) X(F_rate, F_rate) X(v_0, body.v_0) X(x_0, body.x_0)
 // clang-format on
 #define FIELD(name, variable) double name;
 typedef struct {
@@ -38,9 +39,24 @@ typedef struct {
 #undef FIELD
 
 // The results of a step: the force at the end, its mean, and at the start with the inputs held after a jump [N]; work and
-// heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at the end. These are
-// graded. The last ones are the deflection at the end [m].
-enum { F_T, F_Y, F_T_MEAN, F_Y_MEAN, F_T_START, F_Y_START, W_F, Q_F, SLIPS_AT_END, DELTA, DELTA_Y, RESULTS };
+// heat [J] of the step, the heat with that of the jump; velocity [m/s] and place [m] of the mass; whether a bristle with
+// static friction slips at the end. These are graded. The last ones are the deflection at the end [m].
+enum {
+    F_T,
+    F_Y,
+    F_T_MEAN,
+    F_Y_MEAN,
+    F_T_START,
+    F_Y_START,
+    W_F,
+    Q_F,
+    BODY_V,
+    BODY_X,
+    SLIPS_AT_END,
+    DELTA,
+    DELTA_Y,
+    RESULTS
+};
 
 typedef struct {
     double result[RESULTS];

@@ -97,11 +97,13 @@ double scene_start_over_limit(const ReferenceScene* s) {
 }
 
 double scene_gain(const ReferenceScene* s) {
-    const double turns = TURN * s->f, V_rate = turns * hypot(s->V_1, s->V_2) + hypot(s->V_rate, s->V_y_rate);
+    const ReferenceRest rest = reference_rest(s);
+    const double force = rest.limit * s->staticRatio + fabs(s->F) + fabs(s->F_rate) * s->h;
+    const double turns = TURN * s->f, of_mass = s->m > 0.0 ? force / s->m : 0.0;
+    const double V_rate = turns * hypot(s->V_1, s->V_2) + hypot(s->V_rate, s->V_y_rate) + of_mass;
     if (s->law != LAW_ELASTIC_PLASTIC || V_rate == 0.0) {
         return 0.0;
     }
-    const ReferenceRest rest = reference_rest(s);
     return 2.0 * rest.limit / rest.sigma * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
 }
 
@@ -179,6 +181,79 @@ static ReferenceScene contact_drawn(bool plane) {
     return s;
 }
 
+// ---- A mass ----
+
+static const double STIFFNESSES[] = {6e4, 6e12}, MASSES[] = {1e-3, 1e3}; // N/m; kg
+static const double MOST_RINGING = 60.0, LONGEST_OF_MASS = 1e-2;         // rad, of a stuck mass in a step; s
+enum { STEPS_OF_MASS = 3 };
+
+static double force_on_mass(const ReferenceScene* s) { // a normal distribution, nearly
+    const double spread = random_01() + random_01() + random_01() + random_01() - 2.0;
+    return sqrt(3.0) * spread * reference_rest(s).limit * s->staticRatio;
+}
+
+// The force on the mass and V held or linear, and with them at times the load and the separation.
+static void step_of_mass(ReferenceScene* s) {
+    const ReferenceRest rest = reference_rest(s);
+    const double ringing = s->law == LAW_COULOMB ? INFINITY : MOST_RINGING / sqrt(rest.sigma / s->m);
+    const double most = random_chance(0.1) ? LONGEST_OF_MASS : 0.1 * LONGEST_OF_MASS;
+    s->h = fmin(random_chance(0.5) ? most : random_log(1e-6, most), ringing * random_log(1e-2, 1.0));
+    s->F = random_chance(0.6) ? force_on_mass(s) : s->F;
+    if (random_chance(0.5)) {
+        s->F_rate = (force_on_mass(s) - s->F) / s->h;
+        s->V_rate = random_chance(0.3) ? sign() * random_log(1e-3, 1.0) / s->h : 0.0;
+        s->load_rate = random_chance(0.2) ? s->load * between(-1.1, 1.0) / s->h : 0.0;
+        s->d_rate = random_chance(0.2) ? s->R_q / s->lambda * between(-0.5, 2.0) / s->h : 0.0;
+    }
+}
+
+static ReferenceScene mass_drawn(void) {
+    ReferenceScene s = start_values();
+    s.f = random_chance(0.8) ? 20e3 : random_log(1e3, 1e5);
+    s.V_1 = random_chance(0.5) ? random_log(1e-2, 3.0) : 0.0;
+    surfaces(&s);
+    s.a_d = random_chance(0.6) ? 0.0 : s.a_d;
+    s.law = 1 + random_below(4);
+    s.limit = random_chance(0.3) ? LIMIT_LOAD : LIMIT_CONSTANT;
+    s.contact = random_chance(0.6) ? CONTACT_CONSTANT : 1 + random_below(3);
+    s.input = 1 + random_below(2);
+    s.load = random_log(1.0, 1e3);
+    s.mu = random_log(0.03, 1.0);
+    s.m = random_log(MASSES[0], MASSES[1]);
+    *stiffness(&s) *= random_log(STIFFNESSES[0], STIFFNESSES[1]) / reference_rest(&s).sigma;
+    const ReferenceRest rest = reference_rest(&s);
+    if (s.law == LAW_LUGRE || s.law == LAW_ELASTIC_PLASTIC) {
+        s.staticRatio = random_chance(0.4) ? 1.0 : 1.0 + random_log(1e-2, 1.0);
+        s.V_S = random_log(1e-3, 1.0);
+    }
+    if (s.law != LAW_COULOMB && random_chance(0.4)) {
+        s.sigma_1 = 2.0 * random_log(1e-2, 1.0) * sqrt(rest.sigma * s.m);
+    }
+    s.sigma_2 = random_chance(0.3) ? random_log(1e-2, 100.0) : 0.0;
+    s.V = random_chance(0.6) ? 0.0 : sign() * random_log(1e-3, 3.0);
+    s.v_0 = random_chance(0.5) ? 0.0 : random_chance(0.3) ? -s.V : sign() * random_log(1e-4, 3.0);
+    s.x_0 = random_chance(0.8) ? 0.0 : between(-0.1, 0.1);
+    s.delta_0 =
+        s.law != LAW_COULOMB && random_chance(0.4) ? rest.limit / rest.sigma * between(-1.0, 1.0) : 0.0;
+    s.start = random_chance(0.5) ? 0.0 : random_log(1e-6, 10.0);
+    return s;
+}
+
+static Sequence sequence_of_mass(uint64_t number) {
+    static const double OF_MASS[] = {1e-3, 1e-6, 1e-8};
+    Sequence sequence = {.tolerance = OF_MASS[number % 3], .method = 1, .step = {mass_drawn()}};
+    for (int k = 0; k < STEPS_OF_MASS; k++) {
+        ReferenceScene* s = &sequence.step[k];
+        *s = k == 0 ? *s : scene_after(s - 1);
+        step_of_mass(s);
+        if (!scene_is_in_domain(s)) {
+            break;
+        }
+        sequence.steps++;
+    }
+    return sequence;
+}
+
 // ---- Steps at random ----
 
 static void rates(ReferenceScene* s) {
@@ -239,17 +314,30 @@ static void step_at_random(ReferenceScene* s, const ReferenceScene* full) {
 
 // ---- Sequences ----
 
+static bool mass_is_in_domain(const ReferenceScene* s) {
+    const ReferenceRest rest = reference_rest(s);
+    return s->m >= MASSES[0] && s->m <= MASSES[1] && s->h >= 1e-3 * SHORTEST && s->h <= LONGEST_OF_MASS &&
+           rest.sigma >= 0.9 * STIFFNESSES[0] && rest.sigma <= 1.1 * STIFFNESSES[1] &&
+           (s->law == LAW_COULOMB || s->h * sqrt(rest.sigma / s->m) <= MOST_RINGING) && s->V_S >= 1e-3 &&
+           s->sigma_1 <= 2.0 * sqrt(rest.sigma * s->m) && s->sigma_2 <= 100.0 && s->V_1 <= 3.0;
+}
+
 bool scene_is_in_domain(const ReferenceScene* s) {
     const ReferenceScene end = scene_after(s);
     const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E, periods = s->h * s->f;
     const double top = fmax(top_speed(s), top_speed(&end)), damping = 1.001 * reference_rest(s).limit / top;
     const double kappa = scene_kappa(s), kappa_end = scene_kappa(&end);
     const bool swings = vibrates(s) && s->law != LAW_COULOMB, drops = s->staticRatio > 1.0;
-    return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 && s->nu >= 0.0 && s->nu < 0.5 &&
+    const bool contact = s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 && s->nu >= 0.0 &&
+                         s->nu < 0.5 && s->staticRatio >= 1.0 && s->staticRatio <= 3.0;
+    if (s->m > 0.0) {
+        return contact && mass_is_in_domain(s);
+    }
+    return contact &&
            !(swings && (fmin(kappa, kappa_end) < LEAST_KAPPA || fmax(kappa, kappa_end) > MOST_KAPPA)) &&
-           s->h >= SHORTEST && periods >= 1e-6 && periods <= MOST_PERIODS && s->staticRatio >= 1.0 &&
-           s->staticRatio <= 3.0 && !(drops && (s->V_S < 1e-3 * top || s->V_S > 10.0 * top)) &&
-           s->sigma_1 <= damping && s->sigma_2 <= damping && scene_start_over_limit(s) <= LARGEST_START &&
+           s->h >= SHORTEST && periods >= 1e-6 && periods <= MOST_PERIODS &&
+           !(drops && (s->V_S < 1e-3 * top || s->V_S > 10.0 * top)) && s->sigma_1 <= damping &&
+           s->sigma_2 <= damping && scene_start_over_limit(s) <= LARGEST_START &&
            (s->input == INPUT_SEPARATION ||
             fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
@@ -258,6 +346,9 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
     random_state = seed * 0xd1342543de82ef95u + number;
     random_bits();
     random_state ^= random_bits();
+    if (kind == MASS) {
+        return sequence_of_mass(number);
+    }
     Sequence sequence = {.tolerance = TOLERANCES[number % 5], .method = 1};
     const bool plane = kind == PLANE, leaps = plane && number % 4 == 3; // inputs move over many periods
     const bool near_line = plane && number % 8 == 1; // a line, but for a V_y that is nearly none

@@ -7,7 +7,8 @@
 #include "sequence.h"
 
 // PLANE: with a transverse vibration, or a few periods along a line with a V_y that is nearly none.
-typedef enum { ALONG, PLANE } Kind;
+// MASS: steps of a mass on the contact.
+typedef enum { ALONG, PLANE, MASS } Kind;
 
 // A sequence, which depends only on its kind, the seed and the number.
 Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind);

@@ -59,12 +59,13 @@ ReferenceScene scene_after(const ReferenceScene* before) {
     ReferenceScene s = *before;
     s.start = before->start + before->h;
     s.V += before->V_rate * before->h;
+    s.F += before->F_rate * before->h;
     s.V_y += before->V_y_rate * before->h;
     s.d += before->d_rate * before->h;
     // As the FMU carries them on: a load that falls nearly to 0 has no digits to lose.
     s.E = fma(before->E_rate, before->h, s.E);
     s.load = fma(before->load_rate, before->h, s.load);
-    s.V_rate = s.V_y_rate = s.d_rate = s.E_rate = s.load_rate = 0.0;
+    s.V_rate = s.V_y_rate = s.d_rate = s.E_rate = s.load_rate = s.F_rate = 0.0;
     s.initial = START_GIVEN;
     return s;
 }

@@ -15,7 +15,7 @@ typedef struct {
     double tolerance; // solver.tolerance
     int method;       // number of solver.method
     int steps;
-    ReferenceScene step[MOST_STEPS]; // of the later ones delta_0 and slips are not used
+    ReferenceScene step[MOST_STEPS]; // of the later ones delta_0, v_0, x_0 and slips are not used
 } Sequence;
 
 // The start values of modelDescription.xml, and a step of 0.1 ms.

@@ -7,8 +7,9 @@
 #include "scenes.h"
 #include "settled_force.h"
 
-const char* const GRADE_NAMES[GRADES] = {"F_t", "F_y", "F_t_mean", "F_y_mean", "F_t_start", "F_y_start",
-                                         "W_f", "Q_f", "side",     "delta",    "delta_y",   "settled"};
+const char* const GRADE_NAMES[GRADES] = {"F_t",       "F_y",   "F_t_mean", "F_y_mean", "F_t_start",
+                                         "F_y_start", "W_f",   "Q_f",      "body.v",   "body.x",
+                                         "side",      "delta", "delta_y",  "settled"};
 
 static const double ROUNDING = 1e-11; // of S, beside the tolerance
 static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
@@ -43,6 +44,8 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     step->delta_start = v->delta;
     step->delta_y_start = v->delta_y;
     step->slips_start = state->slips;
+    step->v_start = v->body.v;
+    step->x_start = v->body.x;
     step->force_before = v->sigma * hypot(v->delta, v->delta_y);
     put_scene(scene, v);
     state->next_rate_set = 1; // all 0
@@ -50,19 +53,18 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
         return false;
     }
     const FcVector start = {v->F_t, v->F_y};
-    const double rates[] = {[FC_INPUT_V] = scene->V_rate,
-                            [FC_INPUT_D] = scene->d_rate,
-                            [FC_INPUT_E] = scene->E_rate,
-                            [FC_INPUT_LOAD] = scene->load_rate,
-                            [FC_INPUT_V_Y] = scene->V_y_rate};
+    const double rates[] = {[FC_INPUT_V] = scene->V_rate,     [FC_INPUT_D] = scene->d_rate,
+                            [FC_INPUT_E] = scene->E_rate,     [FC_INPUT_LOAD] = scene->load_rate,
+                            [FC_INPUT_V_Y] = scene->V_y_rate, [FC_INPUT_F] = scene->F_rate};
     memcpy(state->next_rate, rates, sizeof rates);
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
     const double work = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
     const double heat = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
-    const double results[RESULTS] = {v->F_t, v->F_y, v->F_t_mean,       v->F_y_mean, start.x,   start.y,
-                                     work,   heat,   state->slips != 0, v->delta,    v->delta_y};
+    const double results[RESULTS] = {v->F_t,    v->F_y, v->F_t_mean, v->F_y_mean, start.x,           start.y,
+                                     work,      heat,   v->body.v,   v->body.x,   state->slips != 0, v->delta,
+                                     v->delta_y};
     memcpy(step->result, results, sizeof results);
     *before = *state;
     return true;
@@ -82,15 +84,28 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
     const double lengths =
         hypot(step->delta_start, step->delta_y_start) + hypot(step->result[DELTA], step->result[DELTA_Y]);
     const ReferenceScene* scene = &taken->scene;
+    // A mass is a little away from its place, while it is stuck at most by its ringing.
+    const double ringing = scene->m > 0.0 ? sqrt(scene->m / reference_rest(scene).sigma) : 0.0;
+    const double astray = scene->m > 0.0 ? S * scene->h / scene->m * fmin(scene->h, ringing) : 0.0;
     const double digits = DIGITS + (vibrates(scene) ? 20.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
     const double force = (tolerance + ROUNDING) * S,
-                 energy = force * path + LEAST_S + digits * fmax(S, step->force_before) * lengths;
+                 energy = force * (path + astray) + LEAST_S + digits * fmax(S, step->force_before) * lengths;
     const double mean = force + digits * scene->sigma_1 * lengths / scene->h;
+    // Of a mass, whose velocity and place are rounded at both ends of the step.
+    const double speed = fabs(scene->v_0) + fabs(truth->result[BODY_V]),
+                 way = fabs(scene->x_0) + fabs(truth->result[BODY_X]);
+    const double of_v = mean * scene->h / scene->m + 2.0 * DBL_EPSILON * speed;
+    const double of_x = of_v * scene->h + 2.0 * DBL_EPSILON * way;
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k <= SLIPS_AT_END; k++) {
         const double found = step->result[k];
         const double off = found - fmin(fmax(found, range[0].result[k]), range[1].result[k]);
+        if (scene->m == 0.0 && (k == BODY_V || k == BODY_X)) {
+            continue;
+        }
         const double allowed = k == SLIPS_AT_END                ? 0.0
+                               : k == BODY_V                    ? of_v
+                               : k == BODY_X                    ? of_x
                                : k == W_F || k == Q_F           ? energy
                                : k == F_T_MEAN || k == F_Y_MEAN ? mean
                                                                 : force;
@@ -129,14 +144,15 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
     const bool grows = may_be_chaotic(&taken->scene);
     const double of_delta = grows ? fmax(tolerance, 2e-10) : 2e-10;
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < (taken->scene.m > 0.0 ? 8 : 6); k++) {
         ReferenceScene moved = taken->scene, past = before ? *before : moved;
-        const double way = k % 2 ? 1.0 : -1.0, grown = k < 4 ? 1.0 : 1.0 + way * of_delta;
+        const double way = k % 2 ? 1.0 : -1.0, grown = k < 4 || k > 5 ? 1.0 : 1.0 + way * of_delta;
         moved.start += k < 2 ? way * ulp : 0.0;
         moved.h += k == 2 || k == 3 ? way * ulp : 0.0;
         moved.delta_0 *= grown;
         moved.delta_y_0 *= grown;
         past.start = moved.start;
+        moved.v_0 += k > 5 ? way * 2.0 * DBL_EPSILON * (fabs(moved.v_0) + fabs(moved.V) + moved.V_1) : 0.0;
         ReferenceStep found = taken->truth;
         if (moved.h > 0.0) {
             step_of_reference(before ? &past : NULL, &moved, &taken->step, 1, &found);
@@ -235,6 +251,8 @@ void trial_run(Trial* trial, const Sequence* sequence, bool settled) {
             taken->scene.delta_0 = taken->step.delta_start;
             taken->scene.delta_y_0 = taken->step.delta_y_start;
             taken->scene.slips = taken->step.slips_start;
+            taken->scene.v_0 = before.v_0 = taken->step.v_start;
+            taken->scene.x_0 = taken->step.x_start;
         }
         trial->unknown += !grade(taken, k == 0 ? NULL : &before, sequence, settled && k == 0);
         trial->worst = fmax(trial->worst, taken->verdict.ratio);

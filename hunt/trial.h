@@ -1,7 +1,8 @@
 // A sequence of steps taken by the FMU. The reference grades each step from the FMU's state before it.
 // The rule is that of docs/numerics.md: the forces at the end, their means, and those after a jump or a settled start are within
 // tolerance S; the W_f and Q_f of the step within tolerance S path; a bristle with static friction slips at the end if and
-// only if the reference's does; F_t_settled, at the first step, is within tolerance S if the reference finds periods that
+// only if the reference's does; body.v within tolerance S h / m, body.x within tolerance S h^2 / m,
+// and the path of energies is S h / m min(h, sqrt(m / sigma)) longer; F_t_settled, at the first step, is within tolerance S if the reference finds periods that
 // repeat. The path is integral of |V| dt + |delta_end - delta_start|. The allowances are for rounding alone:
 // - 1e-11 S, or S path.
 // - 1e-13 |delta| of both ends, times S, or the elastic force before a jump of inputs, for W_f and Q_f and times sigma_1 over
@@ -12,6 +13,7 @@
 //   (scene_gain above 2), the deflection moves by the tolerance.
 // - A bristle within 1e-10 of its kinetic bound, or within 1e-11 of its static bound, lies on it. S is at least 1e-20 N,
 //   and the allowed error of an energy at least 1e-20 J.
+// - 2 eps of velocities and places of a mass at both ends; 2 eps of its velocity and that of the contact at the start.
 // A settled start is judged by F_t_start. A step is counted and not judged if it takes more panels or cycles than the
 // reference goes through; and if it misses while its motion may be chaotic and it has more than 10 periods, its kappa is below
 // 1e-3 as over a lifted tool, the reference differs by more than a tenth of the allowed error in smaller panels, it starts beyond 100 limits, or the sequence starts from a settled state that is not promised.
@@ -29,6 +31,7 @@ extern const char* const GRADE_NAMES[GRADES];
 typedef struct {
     double result[RESULTS]; // as of the reference; the heat of the first step includes that of the start
     double delta_start, delta_y_start; // m, before the step and its inputs
+    double v_start, x_start;           // m/s, m, of the mass
     int slips_start;
     double force_before; // N, sigma |delta| before its inputs
 } FmuStep;

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
-from frictioncontact.fmu import INPUTS
 from workshop.build import build_targets
 from workshop.description import description
 from workshop.project import ROOT
@@ -25,8 +24,9 @@ CHOICES = {
     for name, variable in FIELDS.items()
     if "items" in VARIABLES.get(variable, ())
 }
-RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start W_f Q_f slips
+RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start W_f Q_f v x slips
     delta delta_y S path""".split()
+INPUTS = tuple(name for name in FIELDS if f"{name}_rate" in FIELDS)
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 NAMES = {variable: name for name, variable in FIELDS.items()}
 
@@ -113,6 +113,7 @@ def after(before: Scene, result: Any, **values: Any) -> tuple[Scene, Scene]:
         setattr(left, name, getattr(before, name) + getattr(before, f"{name}_rate") * before.h)
         setattr(left, f"{name}_rate", 0.0)
     left.delta_0, left.delta_y_0 = result.delta, result.delta_y
+    left.v_0, left.x_0 = result.v, result.x
     return left, changed(left, **values)
 
 
@@ -122,7 +123,7 @@ def follow(scenes: Iterable[Scene]) -> list[Any]:
     left = None
     for now in scenes:
         if left is not None:
-            carried = ("start", "delta_0", "delta_y_0", "slips", "initial")
+            carried = ("start", "delta_0", "delta_y_0", "slips", "initial", "v_0", "x_0")
             now = changed(now, **{name: getattr(left, name) for name in carried})
         found.append(step(now, left))
         left, _ = after(now, found[-1])

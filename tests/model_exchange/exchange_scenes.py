@@ -9,7 +9,7 @@ from solver.test_tolerance import drawn as of_any_stiffness
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.exchange import Host
-from workshop.reference import CHOICES, INPUTS, LAWS_WITH_A_STATE, Scene, start_values, step
+from workshop.reference import CHOICES, FIELDS, INPUTS, LAWS_WITH_A_STATE, Scene, start_values, step
 
 OUTPUTS = 40  # points at which the host ends a step of its own
 LARGEST = {"F_t": False, "F_y": False, "W_f": True, "Q_f": True}  # whether it is an energy
@@ -45,7 +45,7 @@ def run(now: Scene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:
     """The last outputs in a host, after an event: a bristle that slips has then been taken onto its bound."""
 
     def inputs(t: float, own: Any) -> dict[str, float]:
-        return {name: getattr(now, name) + getattr(now, f"{name}_rate") * t for name in INPUTS}
+        return {FIELDS[n]: getattr(now, n) + getattr(now, f"{n}_rate") * t for n in INPUTS}
 
     with Host(fmu, start_values(now), inputs, tolerance=tolerance, longest_step=now.h / 20) as host:
         for k in range(1, OUTPUTS + 1):

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.reference import CHOICES, INPUTS, Scene, rest, scene, start_values, step
+from workshop.reference import CHOICES, FIELDS, INPUTS, Scene, rest, scene, start_values, step
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 ROUNDING = 1e-11
@@ -27,7 +27,7 @@ Results = dict[str, float]
 def results(fmu: FrictionFmu, now: Scene, tolerance: float, method: str = "collocation") -> Results:
     solver = {"solver.tolerance": tolerance, "solver.method": method}
     with fmu.session(start_values(now) | solver, now.start) as session:
-        session.set_rates(**{name: getattr(now, f"{name}_rate") for name in INPUTS})
+        session.set_rates(**{FIELDS[name]: getattr(now, f"{name}_rate") for name in INPUTS})
         session.step(now.h)
         names = (*GRADED, "solver.evaluations")
         return dict(zip(names, session.read(names), strict=True))
