@@ -30,6 +30,9 @@ USED = (
     ("solver.stepSize", "solver.method", FIXED_STEPS),
     ("vibration.phase_d", "vibration.a_d", None),
     ("vibration.phase_2", "vibration.V_2", None),
+    ("body.F", "body.m", None),
+    ("body.v_0", "body.m", None),
+    ("body.x_0", "body.m", None),
     ("vibration.f", "vibration.V_1 vibration.V_2 vibration.a_d", None),
 )
 # Magnitudes [SI] from which to which a value is a likely one; 0 always is.
@@ -40,6 +43,8 @@ LIKELY = {
     "E": (3e5, 1e13),
     "delta_0": (0.0, 1e-2),
     "delta_y_0": (0.0, 1e-2),
+    "body.m": (1e-6, 1e6),
+    "body.v_0": (0.0, 100.0),
     "contact.sigma": (100.0, 1e15),
     "contact.R_q": (1e-10, 1e-3),
     "contact.R": (1e-9, 1e-1),

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 MODEL = "FrictionContact"
 FMI2_WARNING = 1
-INPUTS = ("V", "d", "E", "load", "V_y")
+INPUTS = ("V", "d", "E", "load", "V_y", "body.F")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
 _OPENING = Lock()  # one thread unzips what all threads use

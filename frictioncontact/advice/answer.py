@@ -12,11 +12,12 @@ import numpy as np
 
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
-from frictioncontact.advice.stuck_mass import MASTERS, Master, coupling
+from frictioncontact.advice.stuck_mass import INSIDE, MASTERS, Master, coupling
 from frictioncontact.doubts import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves
+from frictioncontact.values import pairs, real
 
 if TYPE_CHECKING:
     from frictioncontact.tables import Source
@@ -99,8 +100,8 @@ def advise(
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
     mass      kg, that moves with the contact: advises on the coupling instead, while the contact sticks
-    master    how the master exchanges values with it: "Jacobi", "Jacobi, reread", "Jacobi, linear" or
-              "Gauss-Seidel"
+    master    how the master exchanges values with it: "Jacobi", "Jacobi, reread", "Jacobi, linear",
+              "Gauss-Seidel"; "inside" if the FMU moves it, as always where the scene has body.m
     fmu       another .fmu file of this model
     returns   an `Advice`: settings, start_values, mean and error [N] (nan of a mass); str() prints them
     raises    UserError: the question is wrong, or the FMU refuses the scene
@@ -114,6 +115,11 @@ def advise(
         fc.simulate(advice.start_values, stop=0.01, step=1e-3, outputs=["F_t_mean"])
     """
     loaded = opened(fmu)
+    inside = pairs(scene, "scene").get("body.m", 0.0)
+    if inside != 0.0:
+        if mass not in (None, inside):
+            raise UserError(f"mass = {mass}: the scene has body.m = {inside}; leave mass out")
+        mass, master = real(inside, "body.m"), INSIDE
     if mass is not None and (step is None or inputs is not None or linear):
         raise UserError(
             "mass needs step and takes no inputs: it looks at the contact stuck at its start values"

@@ -9,7 +9,7 @@ from fmpy.util import read_csv
 
 from frictioncontact.advice.answer import PHASES, Advice, advise
 from frictioncontact.advice.question import OUTPUTS, scene_values
-from frictioncontact.advice.stuck_mass import MASTERS
+from frictioncontact.advice.stuck_mass import INSIDE, MASTERS
 from frictioncontact.command import add_fmu, add_set, command_line, progress_bar, shown
 from frictioncontact.fmu import FrictionFmu, Value, opened
 
@@ -37,8 +37,9 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         "--mass", type=float, help="mass that moves with the contact, kg: advise on the coupling"
     )
     parser.add_argument(
-        "--master", choices=MASTERS, default=MASTERS[0], metavar="NAME",
-        help=f"how the master exchanges values: {' or '.join(map(repr, MASTERS))} ({MASTERS[0]})",
+        "--master", choices=(*MASTERS, INSIDE), default=MASTERS[0], metavar="NAME",
+        help=f"how the master exchanges values: {' or '.join(map(repr, MASTERS))} ({MASTERS[0]}), or inside "
+        "if the FMU has the mass (body.m)",
     )  # fmt: skip
     parser.add_argument("--output-of", choices=OUTPUTS, default="both", help="which output must be accurate")
     parser.add_argument(

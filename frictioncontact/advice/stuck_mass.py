@@ -11,6 +11,8 @@ affine map, and the exchange is stable where the eigenvalues of its matrix are a
     Jacobi, linear  the same with the derivatives: V, F_t and then F_t' are exchanged before the step
     Gauss-Seidel    the mass goes first, then the contact with the new velocity
 
+"inside" is body.m: the FMU moves the mass, and any master is stable at any step.
+
 With a = H^2 sigma / m and b = H sigma_1 / m the eigenvalues x are the roots of
 
     Jacobi          x^3 - 2 x^2 + (1 + a + b) x - b          on the unit circle at  b - b^2 = a
@@ -31,12 +33,14 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Session, Value
 from frictioncontact.values import real
 
-Master = Literal["Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel"]
+Master = Literal["Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel", "inside"]
+INSIDE: Master = "inside"
 MASTERS: tuple[Master, ...] = ("Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel")
 JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = MASTERS
 # The largest H sqrt(sigma / m) that some sigma_1 makes stable: there the two edges meet.
 LARGEST_STEP = {JACOBI: 0.5, REREAD: 2.0, LINEAR: math.sqrt(2.0 + math.sqrt(8.0)), GAUSS_SEIDEL: 2.0}
 MASSES = (1e-12, 1e12)  # kg
+ZETAS = (0.1, 0.5)  # damping ratios of a contact that rings under a mass inside
 MARGIN = 1.1  # of the advised sigma_1 over the smallest stable one, at which a swing never dies out
 
 
@@ -98,19 +102,44 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}
 
 
+def advice_inside(
+    m: float, sigma: float, H: float, scene: Mapping[str, Value]
+) -> tuple[str, dict[str, Value]]:
+    """The same for a mass inside the FMU, which needs no damping; but of its ringing F_t is a sample."""
+    rad = math.sqrt(sigma / m)
+    low, high = (float(f"{2.0 * zeta * math.sqrt(sigma * m):.6g}") for zeta in ZETAS)
+    lines = [
+        f"body.m = {m:g}: the FMU moves the mass by body.F, so every master is stable at every step.",
+        "Let the master send the derivative of body.F too: held forces are its largest error.",
+    ]
+    if scene.get("friction.model") == "Coulomb":
+        lines.append("Coulomb friction holds the mass rigidly, and nothing rings.")
+        return "\n".join(lines), {"body.m": m}
+    lines.append(f"The stuck mass rings at {rad / (2.0 * math.pi):.6g} Hz until friction.sigma_1 damps it:")
+    lines.append(f"{low:g} N s/m is a tenth of the critical damping, {high:g} half of it.")
+    swings = any(scene.get(f"vibration.{name}", 0.0) != 0.0 for name in ("V_1", "a_d"))
+    if swings or H * rad <= 2.0 * math.pi or scene.get("friction.sigma_1", 0.0) != 0.0:
+        lines.append("It may stay as it is: a vibration damps by slip, and a short step shows the ringing.")
+        return "\n".join(lines), {"body.m": m}
+    lines.append(f"In a step of {H:g} s F_t is one sample of it: set friction.sigma_1, or connect F_t_mean.")
+    return "\n".join(lines), {"body.m": m, "friction.sigma_1": low}
+
+
 def coupling(
     fmu: FrictionFmu, scene: Mapping[str, Value], mass: float, step: float, master: str
 ) -> tuple[str, dict[str, Value]]:
     """The advice for a mass [kg] that a scene holds; UserError says what is wrong."""
-    if master not in MASTERS:
-        raise UserError(f"master = {master!r}: must be one of {', '.join(map(repr, MASTERS))}")
+    if master not in (*MASTERS, INSIDE):
+        raise UserError(f"master = {master!r}: must be one of {', '.join(map(repr, (*MASTERS, INSIDE)))}")
     between("mass", real(mass, "mass"), "kg", MASSES)
-    if scene.get("friction.model") == "Coulomb":
+    if scene.get("friction.model") == "Coulomb" and master != INSIDE:
         raise UserError("mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
     with fmu.session(scene) as session:
         sigma = stiffest(session)
     if sigma == 0.0:
         raise UserError("mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
+    if master == INSIDE:
+        return advice_inside(mass, sigma, step, scene)
     return advice(mass, sigma, master, step)
 
 
