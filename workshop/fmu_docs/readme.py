@@ -16,6 +16,7 @@ from frictioncontact import style, table2
 from frictioncontact.command import add_fmu, add_output, command_line
 from frictioncontact.fmu import SETTLED, FrictionFmu, Session, simulate
 from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
+from workshop.bench import mass_inside
 from workshop.build import build_fmu
 from workshop.fmu_docs import diagrams, directions, laws, march
 from workshop.fmu_docs.tutorial import PAGES, blocks
@@ -159,6 +160,7 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "output-choice": diagrams.draw_choice,
         "promise-domain": diagrams.draw_domain,
         "levels": partial(diagrams.draw_levels, fmu),
+        "mass-inside": partial(mass_inside.draw, fmu),
         "step_sizes": partial(step_sizes, fmu),
         "physics-open-contact": partial(laws.open_contact, fmu),
         "physics-static-friction": partial(laws.static_friction, fmu),
