@@ -118,9 +118,10 @@ def advice_inside(
     lines.append(f"The stuck mass rings at {rad / (2.0 * math.pi):.6g} Hz until friction.sigma_1 damps it:")
     lines.append(f"{low:g} N s/m is a tenth of the critical damping, {high:g} half of it.")
     swings = any(scene.get(f"vibration.{name}", 0.0) != 0.0 for name in ("V_1", "a_d"))
-    if swings or H * rad <= 2.0 * math.pi or scene.get("friction.sigma_1", 0.0) != 0.0:
-        why = "the slip in each period damps it" if swings else "no whole cycle of it is within a step"
-        lines.append(f"It may ring here: {why}.")
+    set_already = scene.get("friction.sigma_1", 0.0) != 0.0
+    if swings or set_already or H * rad <= 2.0 * math.pi:
+        why = "a step is shorter than a cycle" if not set_already else "friction.sigma_1 damps it"
+        lines.append(f"Nothing else is needed: {'slip damps it in each period' if swings else why}.")
         return "\n".join(lines), {"body.m": m}
     lines.append(f"In a step of {H:g} s F_t is one sample of it: set friction.sigma_1, or connect F_t_mean.")
     return "\n".join(lines), {"body.m": m, "friction.sigma_1": low}
