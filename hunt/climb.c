@@ -89,11 +89,9 @@ void climb(Climb* c, TrySequence* try_it, void* context) {
     for (double trials = 0.0, of_time = 0.0; trials < c->trials && of_time < 1.0;) {
         const double done = isinf(c->trials) ? of_time : trials / c->trials;
         Sequence sequence = sequence_drawn(c->seed, number++, c->kind);
-        if (sequence.steps == 0) {
-            continue;
-        }
-        sequence.steps = sequence.steps > 1 ? 1 + random_chance(JUMPS) : 1;
-        const bool changes = done > DRAWN && c->ratio[least(c->ratio)] >= 0.0;
+        const bool changes = done > DRAWN && sequence.steps > 0 && c->ratio[least(c->ratio)] >= 0.0;
+        sequence.steps =
+            sequence.steps > 1 ? 1 + random_chance(JUMPS) : 1; // an empty one is not in the domain
         const int place = least(changes ? spent : c->ratio);
         if (changes) {
             sequence = changed(&c->kept[place], &sequence);

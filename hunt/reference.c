@@ -87,16 +87,19 @@ static const Rule* the_rule(void) {
 // Solves linear equations without pivoting: the right sides become the solution.
 static void solve(Real A[STAGES][STAGES], Vector* side) {
     for (int k = 0; k < STAGES; k++) {
-        side[k] /= A[k][k];
-        for (int j = STAGES - 1; j >= k; j--) {
-            A[k][j] /= A[k][k];
-        }
-        for (int i = 0; i < STAGES; i++) {
-            side[i] -= i == k ? 0.0L : A[i][k] * side[k];
-            for (int j = STAGES - 1; j >= k && i != k; j--) {
-                A[i][j] -= A[i][k] * A[k][j];
+        for (int i = k + 1; i < STAGES; i++) {
+            const Real factor = A[i][k] / A[k][k];
+            for (int j = k + 1; j < STAGES; j++) {
+                A[i][j] -= factor * A[k][j];
             }
+            side[i] -= factor * side[k];
         }
+    }
+    for (int k = STAGES - 1; k >= 0; k--) {
+        for (int j = k + 1; j < STAGES; j++) {
+            side[k] -= A[k][j] * side[j];
+        }
+        side[k] /= A[k][k];
     }
 }
 

@@ -354,10 +354,8 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
     const bool near_line = plane && number % 8 == 1; // a line, but for a V_y that is nearly none
     ReferenceScene full = contact_drawn(plane && !near_line);
     const bool linear = random_chance(0.5) || leaps;
-    full.h = leaps ? random_log(12.0, MOST_LEAP) / full.f
-                   : length(&full, plane    ? MOST_PLANAR
-                                   : linear ? MOST_MOVING
-                                            : MOST_PERIODS);
+    const double most = plane ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS;
+    full.h = leaps ? random_log(12.0, MOST_LEAP) / full.f : length(&full, most);
     full.V_y = near_line ? NEARLY_NONE : full.V_y;
     for (int k = 0, wanted = near_line ? 1 : 1 + random_below(4); k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
