@@ -83,8 +83,11 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     }
     for (size_t i = 0; i < nvr; i++) {
         const FcVariableInfo* info = &fc_variables[vr[i]];
-        if (info->offset != offsetof(FcVariables, F_t) && info->offset != offsetof(FcVariables, F_y)) {
-            return fc_refuse(instance, call, "%s has no derivative in time here: only F_t and F_y have",
+        const size_t place = info->offset;
+        if (place != offsetof(FcVariables, F_t) && place != offsetof(FcVariables, F_y) &&
+            place != offsetof(FcVariables, body.v) && place != offsetof(FcVariables, body.x)) {
+            return fc_refuse(instance, call,
+                             "%s has no derivative in time here: only F_t, F_y, body.v and body.x have",
                              info->name);
         }
     }
@@ -92,13 +95,16 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (!fc_instance_refresh_outputs(instance, &message)) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
+    const FcVariables* v = &instance->contact.state.variables;
     const FcVector rate = fc_friction_contact_force_rate(&instance->contact);
+    const double acceleration = v->body.m > 0.0 ? (v->body.F - v->F_t) / v->body.m : 0.0;
+    const FcVariables rates = {.F_t = rate.x, .F_y = rate.y, .body = {.v = acceleration, .x = v->body.v}};
     if (!isfinite(rate.x) || !isfinite(rate.y)) {
         return fc_refuse(instance, call, "the time derivative of %s is beyond the largest number",
                          isfinite(rate.x) ? "F_y" : "F_t");
     }
     for (size_t i = 0; i < nvr; i++) {
-        value[i] = fc_variables[vr[i]].offset == offsetof(FcVariables, F_t) ? rate.x : rate.y;
+        value[i] = fc_variable_value(&rates, &fc_variables[vr[i]]);
     }
     return fmi2OK;
 }
@@ -130,6 +136,8 @@ static double small_change(const FcFrictionContact* contact, const FcVariableInf
         scale = fc_least(v->d, v->contact.R_q / v->contact.lambda);
     } else if (strcmp(info->unit, "rad") == 0) {
         scale = 1.0;
+    } else if (info->offset == offsetof(FcVariables, body.F)) {
+        scale = v->F_C;
     } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
         scale = moment;
     } else if (info->offset == offsetof(FcVariables, vibration.f)) {
@@ -261,7 +269,10 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
             direction.bound_rate += change * bound_rate_by(contact, hybrid, (int)regime, info);
         }
     }
-    const FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
+    FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
+    if (fc_friction_contact_sticks(contact)) { // at a jump of V it would slip
+        motion.force.x = direction.V == 0.0 ? along->body.F : NAN;
+    }
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
     const FcContactLogSlope by = fc_contact_along(&scene, &direction);
     // Before the first step F_t_mean is F_t, and F_y_mean F_y.

@@ -287,26 +287,29 @@ static double periods_of(const FcDrive* drive, double h) {
 }
 
 // The allowed local errors of the states over a step of h [s]: that of the force, times the integrals. Errors add
-// up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma.
+// up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma. With a mass those of
+// ringing without vibration, and of energies, which are never forgotten, add up as those of chance do.
 static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h) {
     const double stiffness = fc_scene_largest_stiffness(scene, h);
+    const double vibrations = periods_of(&scene->drive, h);
+    const double ring = has_body(solver) ? sqrt(solver->body.m / stiffness) : INFINITY; // s, of an angle of 1
     FcDrive drive = scene->drive;
     drive.V.value += solver->body.v;
-    double speed = fc_drive_largest_speed(&drive, h);
-    if (has_body(solver)) { // at the least, ringing
-        speed += options->force / sqrt(stiffness * solver->body.m);
-    }
-    const double path = speed * h;
+    const double path = (fc_drive_largest_speed(&drive, h) + options->force / stiffness / ring) * h;
     const double forgets =
         scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
-    const double periods = fc_most(1.0, periods_of(&scene->drive, h) / fc_most(1.0, forgets));
+    double periods = fc_most(1.0, vibrations / fc_most(1.0, forgets));
+    double energy = 1.0; // in errors of the force
+    if (has_body(solver) && vibrations == 0.0) {
+        periods = fc_most(1.0, sqrt(h / (FC_TWO_PI * ring)));
+    } else if (has_body(solver)) {
+        energy = fc_least(1.0, periods / sqrt(fc_most(1.0, vibrations)));
+    }
     const double fraction = has_body(solver) ? LOCAL_ERROR_FRACTION_OF_BODY : LOCAL_ERROR_FRACTION;
     const double force = fraction * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
-    // Energies never forget: their errors add up as those of chance do.
-    const double all = has_body(solver) ? sqrt(fc_most(1.0, periods_of(&scene->drive, h))) : 1.0;
-    const double energy = force * path * fc_least(1.0, periods / all);
-    const double moment = has_body(solver) ? fc_least(h, sqrt(solver->body.m / stiffness)) : h; // s
+    energy *= force * path;
+    const double moment = fc_least(h, ring);
     const double of[] = {delta,  delta,  force * moment,   force * h,
                          energy, energy, delta * path / h, force * moment * h / solver->body.m};
     for (int k = 0; k < solver->states; k++) {
