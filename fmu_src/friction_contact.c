@@ -431,7 +431,7 @@ FcVector fc_friction_contact_force_rate(FcFrictionContact* contact) {
 
 bool fc_friction_contact_prepare(FcFrictionContact* contact, const FcVariables* of, FcMessage* message) {
     const bool has_body = of->body.m > 0.0;
-    const bool is_used = has_body ? of->friction.model != FC_COULOMB : of->solver.method == FC_METHOD_CVODE;
+    const bool is_used = of->solver.method == FC_METHOD_CVODE;
     struct FcCvode** cvode = &contact->cvode[has_body];
     if (is_used && *cvode == NULL) {
         *cvode = fc_cvode_new(has_body, message);

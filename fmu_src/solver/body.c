@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "model/constants.h"
 #include "model/extremes.h"
 #include "model/regime.h"
 #include "model/root.h"
@@ -78,6 +79,17 @@ void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* 
             return;
         }
     }
+}
+
+bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const char* reason,
+                    FcMessage* message) {
+    const double omega = sqrt(fc_scene_largest_stiffness(scene, h) / body->m);
+    return fc_message_set(
+        message,
+        "body.m = %.9g kg: the step of %.5g s is refused: %s. The stuck mass rings at %.4g kHz, "
+        "%.4g cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = "
+        "Coulomb",
+        body->m, h, reason, 1e-3 * omega / FC_TWO_PI, omega * h / FC_TWO_PI, 0.4 * body->m * omega);
 }
 
 bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,

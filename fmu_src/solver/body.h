@@ -63,6 +63,10 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
 bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
                   FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message);
 
+// Refuses a step of h [s] with a bristle: names the ringing and what ends it, a damping ratio of 0.2. Returns false.
+bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const char* reason,
+                    FcMessage* message);
+
 // Takes *result and the body over a piece of it without a bristle: Coulomb's law, or an open contact (body_rigid.c).
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message);

@@ -606,9 +606,7 @@ bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, do
                    .is_bounded = fc_march_may_meet(scene)};
     begin(&march, fc_bristle_of(result));
     if (!march_periods(&march, h)) {
-        return fc_message_set(message,
-                              "body.m = %.9g kg: the step of %.5g s needs more than %.0e evaluations",
-                              body->m, h, FC_MOST_EVALUATIONS);
+        return fc_body_refuse(scene, body, h, "it needs too many evaluations; use smaller steps", message);
     }
     const bool slips = march.at.kind == FC_SLIPS;
     result->delta = march.at.delta;

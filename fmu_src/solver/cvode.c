@@ -83,7 +83,7 @@ static const double SHORTEST = 1e-50;
 
 // The largest number of evaluations in a communication step, a second of computing: each makes a scene.
 static const double MOST_EVALUATIONS = 2e5;
-static const double MOST_EVALUATIONS_OF_BODY = 5e5;
+static const double MOST_EVALUATIONS_OF_BODY = 4e5;
 
 static bool has_body(const FcCvode* solver) { return solver->states > POSITION; }
 
@@ -263,8 +263,7 @@ FcCvode* fc_cvode_new(bool with_body, FcMessage* message) {
         return solver;
     }
     fc_cvode_free(solver);
-    fc_message_set(message, "%s: no memory for CVODE",
-                   with_body ? "body.m above 0" : "solver.method = cvode");
+    fc_message_set(message, "solver.method = cvode: no memory for CVODE");
     return NULL;
 }
 
@@ -399,8 +398,7 @@ static double integrate_regime(FcCvode* solver, double duration) {
         const double most = has_body(solver) ? MOST_EVALUATIONS_OF_BODY : MOST_EVALUATIONS;
         if (flag >= 0 && solver->evaluations > most) {
             snprintf(solver->reason, sizeof solver->reason,
-                     "it needs more than %.0e evaluations; use smaller steps%s", most,
-                     has_body(solver) ? "" : " or collocation");
+                     "it needs more than %.0e evaluations; use smaller steps or collocation", most);
             flag = CV_TOO_MUCH_WORK;
         }
         if (flag < 0) {
@@ -466,14 +464,8 @@ bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     solver->acceleration = (F + options->largest) / body->m;
     double t;
     if (h > 0.0 && (h < SHORTEST || !integrate(solver, scene, options, h, &t, result))) {
-        const double stiffness = fc_scene_largest_stiffness(scene, h);
-        const double omega = sqrt(stiffness / body->m);
-        return fc_message_set(
-            message,
-            "body.m = %.9g kg: the step of %.5g s is refused: %s. A stuck mass rings at %.4g kHz, %.4g "
-            "cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = Coulomb",
-            body->m, h, h < SHORTEST ? "it is too short" : solver->reason, 1e-3 * omega / FC_TWO_PI,
-            omega * h / FC_TWO_PI, 0.4 * body->m * omega);
+        return fc_body_refuse(scene, body, h, h < SHORTEST ? "it is too short for cvode" : solver->reason,
+                              message);
     }
     const double impulse = impulse_of(solver, h, result->delta, result->impulse, solver->position);
     result->impulse = solver->impulse_0 + impulse;
@@ -485,11 +477,10 @@ bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOpt
 #else
 
 FcCvode* fc_cvode_new(bool with_body, FcMessage* message) {
+    (void)with_body;
     fc_message_set(message,
-                   "%s is not in this build (built without SUNDIALS); rebuild with "
-                   "-DWITH_SUNDIALS=ON or use %s",
-                   with_body ? "body.m above 0 with a bristle" : "solver.method = cvode",
-                   with_body ? "friction.model = Coulomb" : "collocation");
+                   "solver.method = cvode is not in this build (built without SUNDIALS); rebuild with "
+                   "-DWITH_SUNDIALS=ON or use collocation");
     return NULL;
 }
 
@@ -504,7 +495,7 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
 bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                         FcBody* body, FcStepResult* result, FcMessage* message) {
     (void)solver, (void)scene, (void)options, (void)h, (void)body, (void)result;
-    return fc_message_set(message, "body.m above 0 with a bristle is not in this build");
+    return fc_message_set(message, "solver.method = cvode is not in this build");
 }
 
 #endif
