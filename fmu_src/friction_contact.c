@@ -497,7 +497,8 @@ static FcBristle first_bristle(FcFrictionContact* contact) {
     if (v->initialState == FC_STATE_GIVEN) {
         return (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0};
     }
-    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    scene.drive.V.rate = 0.0; // a mass keeps its velocity
     const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
     const FcSolverOptions options = solver_options(v, &scene, period, start);

@@ -188,11 +188,12 @@ static FcContactLogSlope slope_plus(FcContactLogSlope a, double factor, FcContac
 
 FcContactLogSlope fc_contact_along(const FcScene* scene, const FcDirection* along) {
     FcContactLogSlope change = {.sigma = along->log_stiffness};
-    if (scene->is_open) {
+    const double now = scene->is_open ? 0.0 : fc_scene_d(scene, 0.0);
+    if (!(now > 0.0)) { // open, or moved there in a scene that does not use it
         return change;
     }
     const FcDrive* drive = &scene->drive;
-    const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, 0.0));
+    const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, now);
     const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, drive->E.value);
     double d = along->swing;
     if (scene->contact->input == FC_CONTACT_SEPARATION) {
