@@ -40,7 +40,7 @@ static double pushed(const FcBody* body, const FcNodes* nodes, int i) {
 // v at the stages is free - slope e, with e = delta - delta_0 there.
 typedef struct {
     double free[STAGES];
-    double slope[STAGES][STAGES];
+    double FC_PAIRED slope[STAGES][POINTS]; // the last column is 0
 } Velocity;
 
 // v (1 + sigma_2 A tau / m) = v: by three columns at once.
@@ -70,22 +70,25 @@ static void add_viscous_friction(const FcNodes* nodes, double per_mass, Velocity
     }
 }
 
-static void find_velocity(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
-                          const FcNodes* nodes, Velocity* of) {
+FC_INLINE void find_velocity(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
+                             const FcNodes* nodes, Velocity* of) {
     const FcFriction* friction = plane->scene->friction;
-    const double m = body->m;
+    const double over_m = 1.0 / body->m;
+    double FC_PAIRED weight[POINTS]; // of a deflection in the impulse, over the mass
+    for (int j = 0; j < POINTS; j++) {
+        weight[j] = j == START ? 0.0 : nodes->tau[j] * nodes->sigma[j] * over_m;
+    }
     for (int i = 0; i < STAGES; i++) {
-        double held = 0.0; // the impulse of the force of delta_0, over the mass
-        for (int j = 0; j < STAGES; j++) {
-            of->slope[i][j] = FC_RADAU.matrix[i][j] * nodes->tau[j] * nodes->sigma[j] / m;
-            held += of->slope[i][j];
+        const double held = fc_dot(POINTS, FC_RADAU.matrix[i], weight) * start->delta;
+        for (int j = 0; j < POINTS; j++) {
+            of->slope[i][j] = FC_RADAU.matrix[i][j] * weight[j];
         }
-        of->slope[i][i] += friction->sigma_1 / m;
-        of->free[i] = start->v - held * start->delta +
-                      (pushed(body, nodes, i) - friction->sigma_2 * nodes->moved[i]) / m;
+        of->slope[i][i] += friction->sigma_1 * over_m;
+        of->free[i] =
+            start->v - held + (pushed(body, nodes, i) - friction->sigma_2 * nodes->moved[i]) * over_m;
     }
     if (friction->sigma_2 != 0.0) {
-        add_viscous_friction(nodes, friction->sigma_2 / m, of);
+        add_viscous_friction(nodes, friction->sigma_2 * over_m, of);
     }
 }
 
@@ -103,12 +106,12 @@ static void guess_velocities(const FcPlane* plane, const FcBody* body, const FcB
 }
 
 // delta' = w - rho delta, rho = sigma side w / g: Newton's method in e. A stuck bristle has rho = 0 and needs one solution.
-static bool find_deflections(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, double close,
-                             const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
+FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
+                                double close, const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     const bool relaxes = start->kind == FC_RELAXES;
     Velocity velocity;
     find_velocity(plane, body, start, nodes, &velocity);
-    double e[STAGES] = {0.0};
+    double FC_PAIRED e[POINTS] = {0.0};
     double w[STAGES];
     double last = HUGE_VAL;
     if (relaxes) {
@@ -140,8 +143,7 @@ static bool find_deflections(const FcPlane* plane, const FcBody* body, const FcB
         FcSystem row;
         fc_collocation_begin(row, z);
         for (int i = 0; i < STAGES; i++) {
-            row[i][FC_FIRST] =
-                left[i] - fc_dot(STAGES - 1, FC_RADAU.inverse[i], e) - FC_RADAU.inverse[i][LAST] * e[LAST];
+            row[i][FC_FIRST] = left[i] - fc_dot(POINTS, FC_RADAU.inverse[i], e);
             for (int j = 0; j < STAGES; j++) {
                 row[i][j] += by_w[i] * velocity.slope[i][j];
             }
@@ -154,10 +156,7 @@ static bool find_deflections(const FcPlane* plane, const FcBody* body, const FcB
             step = fc_most(step, fabs(row[i][FC_FIRST]) * nodes->sigma[i]);
         }
         for (int i = 0; i < STAGES; i++) {
-            panel->v[i] = velocity.free[i];
-            for (int j = 0; j < STAGES; j++) {
-                panel->v[i] -= velocity.slope[i][j] * e[j];
-            }
+            panel->v[i] = velocity.free[i] - fc_dot(POINTS, velocity.slope[i], e);
             w[i] = panel->v[i] + nodes->V[i];
             panel->delta[i] = start->delta + e[i];
         }
@@ -275,8 +274,8 @@ void fc_body_panel_rates(const FcPlane* plane, const FcBody* body, const FcBodyS
     }
 }
 
-bool fc_body_panel(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, double close,
-                   FcNodes* nodes, FcBodyPanel* panel, double* solves) {
+FC_WITH_AVX bool fc_body_panel(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
+                               double close, FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     assert(body->m > 0.0 && close > 0.0 && plane->on_line);
     panel->delta[START] = start->delta;
     panel->v[START] = start->v;

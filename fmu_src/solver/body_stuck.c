@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "model/extremes.h"
+#include "model/regime.h"
 
 // The largest |Z|, over the radius of the bound. Chosen empirically: ten times of it loses a digit near resonance, where panels
 // keep it; a tenth costs time there.
@@ -53,7 +54,8 @@ double fc_body_stuck_delta(const FcBodyStuck* of, double x, double* rate, double
 }
 
 double fc_body_stuck_free_time(const FcBodyStuck* of, double D, double end) {
-    const double most = D * (1.0 - 1e-9) - fabs(of->Z) - hypot(of->C, of->S); // of |A + B t|
+    const double most =
+        D * (1.0 + 0.5 * FC_ROUNDING_OF_BOUND) - fabs(of->Z) - hypot(of->C, of->S); // of |A + B t|
     if (!(most > fabs(of->A))) {
         return 0.0;
     }
