@@ -17,12 +17,17 @@ from frictioncontact.doubts import unused, warn_of
 from frictioncontact.errors import UserError, did_you_mean, quiet
 from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
-from frictioncontact.identification.experiment import INSTRUMENT, Experiment, Rows
-from frictioncontact.identification.fit import fit as fitted
-from frictioncontact.identification.parameter import Parameter, parameter
-from frictioncontact.identification.result import Fit
-from frictioncontact.identification.search import Tell, search, silent
-from frictioncontact.identification.series import Record
+from frictioncontact.identification.experiment import (
+    INSTRUMENT,
+    Experiment,
+    Parameter,
+    Record,
+    Rows,
+    parameter,
+)
+from frictioncontact.identification.faults import hidden, remedies, shapes
+from frictioncontact.identification.fit import Fit, Tell, search, silent, with_profiles
+from frictioncontact.identification.judge import judge
 from frictioncontact.identification.show import show
 from frictioncontact.tables import accepted
 from frictioncontact.values import LARGEST, Variables, number, pairs, real
@@ -157,6 +162,24 @@ def identify(
             experiment = min((plain, experiment), key=lambda one: search(one, one.target).squares)
         found = fitted(experiment, tell)
     return Identification(found, experiment)
+
+
+def fitted(experiment: Experiment, tell: Tell = silent) -> Fit:
+    """Least squares from the best of some sampled starts, or from the given start values.
+
+    Where the law does not fit, its remedies are sought.
+
+    UserError where there are fewer rows than parameters; FrictionError where the FMU refuses every start.
+    """
+    result = with_profiles(experiment, search(experiment, experiment.target, tell), tell)
+    of_faults = shapes(experiment, result)
+    judge(experiment, result, of_faults)
+    if result.misfits:
+        tell("what explains the misfit")
+        result.remedies.extend(remedies(experiment, result))
+    elif result.degrees > 0:
+        result.hidden.extend(hidden(experiment, result, of_faults))
+    return result
 
 
 def _instrument(nuisance: Iterable[str], rows: Measurements | Series) -> list[str]:

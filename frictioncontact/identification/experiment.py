@@ -6,6 +6,8 @@ what was measured), or in its unit where it is free. An instrument's nuisances l
 law and what it measured: sign * F(t - delay) + offset + drift * (t - first t).
 """
 
+from __future__ import annotations
+
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -15,10 +17,111 @@ from typing import Any, Self
 import numpy as np
 
 from frictioncontact.batch import simulate_many
+from frictioncontact.batch.many import Outputs
+from frictioncontact.doubts import WITH_STATIC_FRICTION
+from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.identification.data import Measurements, Series
-from frictioncontact.identification.parameter import Parameter
+from frictioncontact.simulation import moving
+from frictioncontact.tables import accepted
 from frictioncontact.values import LARGEST
+
+LEAST = {"d": 1e-12, "E": 1.0}  # m, Pa: the FMU asks for more than 0 where they are used
+
+# The ranges where nothing is given. Of other parameters starts are sought within a factor of 3 of the usual
+# value, and the fit stays within a factor of FARTHEST of it.
+PHASES = ("vibration.phase_d", "vibration.phase_2")
+RANGES = {
+    "contact.stiffnessScale": (1e-9, 10.0),
+    "contact.sigma": (1e3, 1e13),
+    **dict.fromkeys(PHASES, (0.0, 2.0 * math.pi)),
+}
+NEAR, FARTHEST = 3.0, 1e6
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """The coordinate is the logarithm if the parameter must be positive, so that an interval is a factor.
+
+    Else it is the value over the largest that is searched, or over 1 rad.
+    """
+
+    name: str
+    unit: str
+    low: float  # the fit stays from low to high
+    high: float
+    search: tuple[float, float]  # where starts are sought
+    start: float | None
+    logarithmic: bool
+
+    @property
+    def after(self) -> str:
+        """The unit as it follows a number."""
+        return "" if self.unit == "1" else f" {self.unit}"
+
+    @property
+    def periodic(self) -> bool:
+        return self.name in PHASES
+
+    @property
+    def unit_of_coordinate(self) -> float:
+        return 1.0 if self.periodic else max(map(abs, self.search)) or 1.0
+
+    def to_coordinate(self, value: float) -> float:
+        if self.logarithmic:
+            return math.log(value) if value > 0.0 else -math.inf
+        return value / self.unit_of_coordinate
+
+    def to_value(self, coordinate: float) -> float:
+        return float(self.values(np.float64(coordinate)))
+
+    def values(self, coordinates: np.ndarray) -> np.ndarray:
+        if self.logarithmic:
+            return np.exp(np.minimum(coordinates, 700.0))
+        return coordinates * self.unit_of_coordinate
+
+    def wrapped(self, coordinate: float) -> float:
+        return coordinate % (2.0 * math.pi) if self.periodic else coordinate
+
+
+def parameter(
+    fmu: FrictionFmu,
+    name: str,
+    start: float | None,
+    search: tuple[float, float] | None,
+    constants: Mapping[str, Any],
+) -> Parameter:
+    """A parameter by its name in the FMU, with bounds and unit from the model description.
+
+    search is the range that it stays in; of a phase it says only where starts are sought. UserError where the
+    name is none that can be fitted, or a value is out of bounds.
+    """
+    names = accepted(fmu.variables)
+    if name not in names:
+        raise UserError(
+            f"{name} can't be fitted{did_you_mean(str(name), names) or ';'} these can: {', '.join(names)}"
+        )
+    variable = fmu.variables[name]
+    low = LEAST.get(name, -LARGEST) if variable.min is None else float(variable.min)
+    high = LARGEST if variable.max is None else float(variable.max)
+    after = "" if variable.unit == "1" else f" {variable.unit}"
+    for value in (*(search or ()), *([] if start is None else [start])):
+        if not low <= value <= high:
+            raise UserError(f"{name} = {value:g}{after} must be from {low:g} to {high:g}")
+    logarithmic = low > 0.0
+    search = search or (RANGES.get(name) if start is None else None)
+    if search is not None:
+        stays = search
+    else:
+        usual = float(constants.get(name, variable.start)) if start is None else start
+        usual = usual or float(variable.nominal or 1.0)
+        far = FARTHEST * abs(usual)
+        search = max(low, min(usual / NEAR, usual * NEAR)), min(high, max(usual / NEAR, usual * NEAR))
+        stays = max(low, usual / FARTHEST if logarithmic else -far), min(high, far)
+    if name in PHASES:
+        stays = -math.inf, math.inf
+    return Parameter(name, variable.unit, *stays, search, start, logarithmic)
+
 
 TOLERANCE = 1e-6  # of the FMU's solver: far below what differences of forces over DIFFERENCE need
 TIGHT = 1e-10  # where a fit ends
@@ -237,3 +340,92 @@ class Rows(Experiment):
             k, row = refused[0]
             self.problem = f"row {row + 1}: {found['reason'][k, row]}"
         return found["F_t_settled"]
+
+
+class Record(Experiment):
+    """F_t along the record; inputs are linear between two samples, and a position is a parabola.
+
+    The force that the record starts with is a nuisance: the first sample is as uncertain as any other. With
+    a delay the velocity before the record is one, too.
+    """
+
+    word = "sample"
+
+    rows: Series
+
+    def __init__(
+        self,
+        fmu: FrictionFmu,
+        series: Series,
+        parameters: Sequence[Parameter],
+        instrument: Sequence[str] = (),
+    ) -> None:
+        self.rows = series
+        told = slice(None) if series.told is None else series.told
+        force, time = series.force[told], series.time[told]
+        uncertainty = None if series.uncertainty is None else list(series.uncertainty[told])
+        sign = -1.0 if "sign" in instrument else 1.0
+        first = [Nuisance(sign * float(force[0]), False)]
+        first += [Nuisance(1.0, False)] if "delay" in instrument else []
+        super().__init__(fmu, parameters, list(force), uncertainty, first, list(time), instrument)
+        held = {name: float(values[0]) for name, values in series.inputs.items()}
+        self._constants = {**series.constants, **held, "V": float(series.V[0])}
+        inputs = series.inputs if series.position is not None else {"V": series.V, **series.inputs}
+        self._inputs = moving(series.time, inputs, series.position)
+
+    def model(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+        found = np.full((len(points), len(self.force)), np.nan)
+        if "delay" not in self.places:
+            return self._model(points, tolerance, 0.0, 1.0)
+        delays, before = self.nuisance(points, "delay"), points[:, [len(self.parameters) + 1]]
+        pairs, place = np.unique(np.hstack([delays, before]), axis=0, return_inverse=True)
+        for k, pair in enumerate(pairs.tolist()):
+            here = place.ravel() == k
+            found[here] = self._model(points[here], tolerance, *pair)
+        return found
+
+    def _model(self, points: np.ndarray, tolerance: float, delay: float, before: float) -> np.ndarray:
+        """Of points of one delay [s]: the law's time is that of the record less the delay.
+
+        before: the velocity before the record, over its first.
+        """
+        fitted = {p.name: p.values(points[:, k]) for k, p in enumerate(self.parameters)}
+        found = np.full((len(points), len(self.force)), np.nan)
+        begin = self.time[0] - delay
+        deflections = self._deflections(fitted, points[:, len(self.parameters)], begin)
+        good = np.isfinite(deflections)
+        values = {
+            **self._constants,
+            **{name: values[good] for name, values in fitted.items()},
+            "delta_0": deflections[good],
+            "solver.tolerance": tolerance,
+        }
+        inputs, ends = self._inputs.preceded(before, begin), self.time[1:] - self.time[0]
+        times = np.concatenate([[0.0], inputs.steps(ends)])
+        held, rates = inputs.over(times[:-1], times[1:])
+        # A step of no length gives the force at the first sample.
+        steps = {
+            "steps": np.diff(times, prepend=0.0),
+            "inputs": {name: np.concatenate([each[:1], each]) for name, each in held.items()},
+            "rates": {name: np.concatenate([[0.0], each]) for name, each in rates.items()},
+        }
+        forces = self._simulated(values, {"F_t": ("F_t", "samples")}, begin=begin, **steps)["F_t"]
+        found[good] = forces[:, np.concatenate([[0], np.searchsorted(times, ends)])]
+        found[np.isnan(found).any(axis=1)] = np.nan
+        return found
+
+    def _simulated(self, values: Mapping[str, Any], outputs: Outputs, **steps: Any) -> dict[str, np.ndarray]:
+        """From the first sample on; what the FMU refuses is nan, and a problem."""
+        answer = simulate_many(values, outputs, unit="s", errors="keep", fmu=self.fmu.path, **steps)
+        refused = [reason for reason in answer["reason"] if reason is not None]
+        self.problem = refused[0] if refused else self.problem
+        return answer
+
+    def _deflections(self, fitted: dict[str, np.ndarray], force: np.ndarray, begin: float) -> np.ndarray:
+        """Of the bristle at begin [s], in m, for a force there [N] that can't exceed its bound."""
+        values = {**self._constants, **fitted, "V": np.full(len(force), self._constants["V"])}
+        now = self._simulated(values, ("sigma", "F_n"), duration=0.0, begin=begin)
+        bound = self.limit(values, now["F_n"])
+        if values.get("friction.model") in WITH_STATIC_FRICTION:
+            bound = bound * self.value(values, "friction.staticRatio")
+        return np.clip(force, -bound, bound) / now["sigma"]

@@ -13,10 +13,8 @@ from frictioncontact.doubts import BRISTLES, unused
 from frictioncontact.errors import FrictionError
 from frictioncontact.identification.data import Measurements, Series
 from frictioncontact.identification.experiment import Experiment
-from frictioncontact.identification.judge import misfits
-from frictioncontact.identification.result import Fit
-from frictioncontact.identification.search import search
-from frictioncontact.identification.suspicion import CHANCE, visible
+from frictioncontact.identification.fit import Fit, search
+from frictioncontact.identification.judge import CHANCE, misfits, visible
 
 V_1, LAW = "vibration.V_1", "friction.model"
 MOST = 0.25  # of the sum of squares, left of a misfit that is mostly explained

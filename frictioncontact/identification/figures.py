@@ -7,9 +7,8 @@ from matplotlib.ticker import EngFormatter, LogLocator, MaxNLocator, NullFormatt
 
 from frictioncontact import style
 from frictioncontact.identification.data import Series
-from frictioncontact.identification.experiment import Experiment
-from frictioncontact.identification.parameter import Parameter
-from frictioncontact.identification.result import Fit
+from frictioncontact.identification.experiment import Experiment, Parameter
+from frictioncontact.identification.fit import Fit
 
 WIDEST = 3.0  # half-width of the map in coordinates: a factor of 20, or 3 rad
 

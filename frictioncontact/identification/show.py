@@ -7,10 +7,9 @@ from rich.console import Console
 from rich.table import Table
 
 from frictioncontact.command import as_table
-from frictioncontact.identification.experiment import Experiment
+from frictioncontact.identification.experiment import Experiment, Parameter
 from frictioncontact.identification.faults import described
-from frictioncontact.identification.parameter import Parameter
-from frictioncontact.identification.result import Fit
+from frictioncontact.identification.fit import Fit
 
 MOST = 30  # rows shown
 

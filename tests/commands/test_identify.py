@@ -16,14 +16,11 @@ import frictioncontact as fc
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
+from frictioncontact.identification.api import fitted
 from frictioncontact.identification.data import Measurements, read
-from frictioncontact.identification.experiment import Rows
-from frictioncontact.identification.fit import fit
-from frictioncontact.identification.judge import misfits
-from frictioncontact.identification.parameter import parameter
-from frictioncontact.identification.search import search
-from frictioncontact.identification.series import Record
-from frictioncontact.identification.suspicion import CHANCE, suspicion
+from frictioncontact.identification.experiment import Record, Rows, parameter
+from frictioncontact.identification.fit import search
+from frictioncontact.identification.judge import CHANCE, misfits, suspicion
 from frictioncontact.parameters import STIFFNESS_PRINTED
 from workshop.project import ROOT
 from workshop.validate import longitudinal
@@ -52,7 +49,7 @@ def test_profile_is_the_hull_of_the_region_on_a_grid(fmu: FrictionFmu) -> None:
     rows = read(identify.EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
     experiment = Rows(fmu, rows, named)
-    result = fit(experiment)
+    result = fitted(experiment)
     assert any("an identification, not a validation" in text for text in result.warnings)
     assert any("another solution" in text for text in result.warnings)
     edge = result.squares * (1.0 + stats.t.ppf(0.975, 1) ** 2)  # with one degree of freedom

@@ -14,11 +14,10 @@ from scipy.special import i0
 
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import area, load, stiffness
+from frictioncontact.identification.api import fitted
 from frictioncontact.identification.command import EXAMPLE
 from frictioncontact.identification.data import read
-from frictioncontact.identification.experiment import Rows
-from frictioncontact.identification.fit import fit
-from frictioncontact.identification.parameter import parameter
+from frictioncontact.identification.experiment import Rows, parameter
 from frictioncontact.parameters import (
     COULOMB_FORCE,
     E_FULL,
@@ -221,7 +220,7 @@ def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:
 def test_15_least_squares_through_the_same_rows(fmu: FrictionFmu) -> None:
     rows = read(EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
-    result = fit(Rows(fmu, rows, named))
+    result = fitted(Rows(fmu, rows, named))
     MN, (least, most), (low, high) = 1e-6 * STIFFNESS_PRINTED, *result.profiles
     linear = [MN * scale for scale in result.interval(0)]
     turns = [math.degrees(angle) for angle in result.interval(1)]

@@ -8,10 +8,8 @@ from matplotlib.axes import Axes
 from frictioncontact.errors import quiet
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification.data import Measurements
-from frictioncontact.identification.experiment import Rows
-from frictioncontact.identification.fit import with_profiles
-from frictioncontact.identification.parameter import parameter
-from frictioncontact.identification.search import search
+from frictioncontact.identification.experiment import Rows, parameter
+from frictioncontact.identification.fit import search, with_profiles
 from frictioncontact.style import BLACK, BLUE, ORANGE
 from workshop.report.figure import Figure, Level, Panel
 
