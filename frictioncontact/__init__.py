@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .advice.answer import Advice, advise
     from .batch import simulate_many
     from .errors import BatchError, FrictionError, FrictionWarning, UserError
+    from .exchange import ModelExchange
     from .fmu import FrictionFmu
     from .identification.api import Identification, identify
     from .law import FrictionLaw, friction_law
@@ -59,6 +60,7 @@ _HOME = {
     "sweep": "sweeps.run",
     "Swept": "sweeps.run",
     "FrictionFmu": "fmu",
+    "ModelExchange": "exchange",
     "UserError": "errors",
     "FrictionError": "errors",
     "BatchError": "errors",
@@ -74,6 +76,7 @@ __all__ = [
     "FrictionLaw",
     "FrictionWarning",
     "Identification",
+    "ModelExchange",
     "Swept",
     "UserError",
     "advise",

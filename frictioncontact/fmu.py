@@ -59,7 +59,7 @@ class Closing:
         self.close()
 
 
-class _Loaded:
+class Loaded:
     """A library of FMPy without its constructor, which changes the folder of the process while it loads.
 
     FMPy binds the functions by the first letters of the class's name. A copy is another instance's.
@@ -75,7 +75,7 @@ class _Loaded:
         self._loadFunctions()  # type: ignore[attr-defined]
 
 
-class FMU2Contact(_Loaded, fmi2.FMU2Slave):
+class FMU2Contact(Loaded, fmi2.FMU2Slave):
     """In co-simulation."""
 
 

@@ -1,4 +1,4 @@
-"""FrictionContact.fmu in model exchange: an instance and states of the host's own, by CVODE with events.
+"""FrictionContact.fmu in model exchange by CVODE: the package's host with another integrator.
 
     with FrictionFmu("build/FrictionContact.fmu") as fmu:
         host = Host(fmu, {"friction.model": "ElasticPlastic"}, lambda t, own: {"V": 0.1 * t}, tolerance=1e-8)
@@ -11,31 +11,38 @@ the host sets the inputs in every evaluation of the right-hand side. Times in s,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from ctypes import Array, c_double, c_uint
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Model
 from fmpy.sundials import CVodeSolver
 
-from frictioncontact.fmu import Closing, FrictionError, FrictionFmu, Value, logging_callbacks
+from frictioncontact.exchange import STATES, FMU2Bristle, Inputs, ModelExchange, Rates
+from frictioncontact.fmu import FrictionFmu, Value
 
-Inputs = Callable[[float, np.ndarray], Mapping[str, float]]
-Rates = Callable[..., Sequence[float]]
-STATES = 4  # delta, W_f, Q_f, delta_y
 MOST_STEPS = 1_000_000  # of CVODE on the way to one output
 
 
-class Host(Closing):
-    """One contact in model exchange and the host's own states, from start on.
+class FMU2Counted(FMU2Bristle):
+    """Counts the calls of the FMU's functions."""
+
+    calls = 0
+
+    def _call(self, *arguments: Any) -> Any:
+        self.calls += 1
+        return super()._call(*arguments)
+
+
+class Host(ModelExchange):
+    """One contact in model exchange and the host's own states, from 0 on.
 
     inputs(t, own) gives inputs of the FMU; what it does not name stays as it is. own_rates(t, own, *forces)
     gives the rates of the host's own states by these outputs of the FMU; own are the start values of the
     states, own_nominals their sizes.
     """
+
+    Model = FMU2Counted
 
     def __init__(
         self,
@@ -44,93 +51,38 @@ class Host(Closing):
         inputs: Inputs,
         *,
         tolerance: float,
-        start: float = 0.0,
         longest_step: float = np.inf,
         own: Sequence[float] = (),
         own_nominals: Sequence[float] = (),
-        own_rates: Rates | None = None,
+        own_rates: Rates = lambda t, own, *forces: (),
         forces: Sequence[str] = ("F_t",),
     ) -> None:
-        self.fmu = fmu
-        self.time = start
-        self.own = np.array(own, float)
-        self.events = 0
-        self._inputs, self._own_rates, self._own_nominals = inputs, own_rates, np.array(own_nominals, float)
-        self._forces = self._references(forces)
-        self._model = self._instantiated()
-        try:
-            self._start(start_values, start)
-            self._solver = CVodeSolver(
-                nx=STATES + len(self.own),
-                nz=fmu.description.numberOfEventIndicators,
-                get_x=self._get_states,
-                set_x=self._set_states,
-                get_dx=self._get_rates,
-                get_z=self._model.getEventIndicators,
-                get_nominals=self._get_nominals,
-                set_time=self._set_time,
-                input=SimpleNamespace(apply=lambda t: None),  # inputs are set with the states
-                startTime=start,
-                maxStep=longest_step,
-                relativeTolerance=tolerance,
-                maxNumSteps=MOST_STEPS,
-            )
-        except BaseException:
-            self.close()
-            raise
+        super().__init__(
+            start_values, own=own, inputs=inputs, rates=own_rates, outputs=forces, nominals=own_nominals,
+            tolerance=tolerance, fmu=fmu,
+        )  # fmt: skip
+        self._solver = CVodeSolver(
+            nx=STATES + len(self.own),
+            nz=fmu.description.numberOfEventIndicators,
+            get_x=self._get_states,
+            set_x=self._set_states,
+            get_dx=self._get_rates,
+            get_z=self._model.getEventIndicators,
+            get_nominals=self._get_nominals,
+            set_time=self._set_time,
+            input=SimpleNamespace(apply=lambda t: None),  # inputs are set with the states
+            startTime=0.0,
+            maxStep=longest_step,
+            relativeTolerance=tolerance,
+            maxNumSteps=MOST_STEPS,
+        )
 
     @property
     def calls(self) -> int:
         """Of every function of the FMU since the start."""
         return self._model.calls
 
-    def _references(self, names: Iterable[str]) -> Array[c_uint]:
-        found = [self.fmu.variables[name].valueReference for name in names]
-        return (c_uint * len(found))(*found)
-
-    def _instantiated(self) -> FMU2Counted:
-        model = FMU2Counted(
-            guid=self.fmu.description.guid,
-            modelIdentifier=self.fmu.description.modelExchange.modelIdentifier,
-            unzipDirectory=str(self.fmu.directory),
-            instanceName="contact",
-        )
-        self.messages: list[str] = []
-        self._callbacks = logging_callbacks(self.messages)
-        model.instantiate(callbacks=self._callbacks)
-        return model
-
-    def _start(self, start_values: Mapping[str, Value], start: float) -> None:
-        self._model.setupExperiment(startTime=start)
-        for name, value in {**start_values, **self._inputs(start, self.own)}.items():
-            self._set(name, value)
-        self._model.enterInitializationMode()
-        try:
-            self._model.exitInitializationMode()
-        except FMICallException as error:
-            raise FrictionError("; ".join(self.messages) or str(error)) from None
-        self._update()
-
-    def _update(self) -> None:
-        """The end of an event, and the time of the next one that the FMU announces."""
-        *_, announced, time = self._model.newDiscreteStates()
-        self._next_event = time if announced else np.inf
-        self._model.enterContinuousTimeMode()
-
-    def _set(self, name: str, value: Value) -> None:
-        variable, number = self.fmu.variables[name], self.fmu.known.number(name, value, "set")
-        if variable.type == "Real":
-            self._model.setReal([variable.valueReference], [number])
-        else:
-            self._model.setInteger([variable.valueReference], [int(number)])
-
     # What CVODE asks for; pointers are to as many doubles as there are states.
-
-    def _set_inputs(self) -> None:
-        values = self._inputs(self.time, self.own)
-        if values:
-            reals = (c_double * len(values))(*values.values())
-            self._model.fmi2SetReal(self._model.component, self._references(values), len(values), reals)
 
     def _set_time(self, t: float) -> None:
         self.time = t
@@ -147,10 +99,8 @@ class Host(Closing):
 
     def _get_rates(self, rates: Any, count: int) -> None:
         self._model.getDerivatives(rates, STATES)
-        if self._own_rates:
-            forces = (c_double * len(self._forces))()
-            self._model.fmi2GetReal(self._model.component, self._forces, len(forces), forces)
-            own = self._own_rates(self.time, self.own, *forces)
+        if count > STATES:
+            own = self._own_rates(self.time, self.own, *self._model.getReal(self._outputs))
             np.ctypeslib.as_array(rates, (count,))[STATES:] = own
 
     def _get_nominals(self, nominals: Any, count: int) -> None:
@@ -169,26 +119,9 @@ class Host(Closing):
 
     def event(self) -> None:
         """An event now, as after an input that jumps."""
-        self.events += 1
-        self._model.enterEventMode()
-        self._set_inputs()
-        self._update()
+        super().event()
         self._solver.reset(self.time)
 
-    def get(self, *names: str) -> np.ndarray:
+    def get(self, *names: str) -> np.ndarray:  # type: ignore[override]
+        """The values of several variables now."""
         return np.array(self._model.getReal(self._references(names)))
-
-    def close(self) -> None:
-        if self._model.component is not None:
-            self._model.freeInstance()
-            self._model.component = None
-
-
-class FMU2Counted(FMU2Model):
-    """Counts the calls of the FMU's functions. FMPy loads by the first letters of the class's name."""
-
-    calls = 0
-
-    def _call(self, *arguments: Any) -> Any:
-        self.calls += 1
-        return super()._call(*arguments)

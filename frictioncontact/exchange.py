@@ -1,0 +1,170 @@
+"""`ModelExchange`: a contact and states of its host, advanced together by an integrator of scipy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from ctypes import Array, c_double, c_uint
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fmpy import fmi2
+from fmpy.fmi1 import FMICallException
+from scipy.integrate import BDF, OdeSolver
+
+from frictioncontact.fmu import Closing, FrictionError, FrictionFmu, Loaded, logging_callbacks, opened
+from frictioncontact.values import Value, real
+
+Inputs = Callable[[float, np.ndarray], Mapping[str, float]]
+Rates = Callable[..., Sequence[float]]
+STATES = 4  # delta, W_f, Q_f, delta_y
+
+
+class FMU2Bristle(Loaded, fmi2.FMU2Model):
+    """In model exchange."""
+
+
+class ModelExchange(Closing):
+    """One contact in model exchange beside states of the host, which one integrator advances together.
+
+    start      start values by name, SI units
+    own        start values of the host's own states
+    inputs     (t, own) -> the FMU's inputs by name; what it does not name stays as it is
+    rates      (t, own, F_t) -> rates of the own states; after t and own the values of `outputs`
+    outputs    names of the FMU's outputs that the rates depend on
+    nominals   sizes of the own states; 1 of each if not given
+    tolerance  relative, of the integrator
+    method     the integrator, a class of scipy.integrate
+    fmu        another .fmu file of this model, or a `FrictionFmu`
+    raises     UserError: a name or a value is wrong; FrictionError: the FMU or the integrator refuses
+
+    `time` [s], `own`, `events` and `longest`, the longest step [s], are what `advance` has reached.
+
+        import frictioncontact as fc
+        scene = {"friction.model": "ElasticPlastic", "V": 0.0, "vibration.V_1": 0.5}
+        mass = {"inputs": lambda t, own: {"V": own[0]}, "rates": lambda t, own, F_t: [(15.0 - F_t) / 2.0]}
+        with fc.ModelExchange(scene, own=[0.0], **mass) as pulled:
+            pulled.advance(2e-3)
+            print(pulled.own[0], pulled.get("F_t"))
+    """
+
+    Model = FMU2Bristle
+
+    def __init__(
+        self,
+        start: Mapping[str, Value],
+        *,
+        own: Sequence[float] = (),
+        inputs: Inputs = lambda t, own: {},
+        rates: Rates = lambda t, own, *outputs: (),
+        outputs: Sequence[str] = ("F_t",),
+        nominals: Sequence[float] | None = None,
+        tolerance: float = 1e-6,
+        method: type[OdeSolver] = BDF,
+        fmu: str | Path | FrictionFmu | None = None,
+    ) -> None:
+        self.fmu = fmu if isinstance(fmu, FrictionFmu) else opened(fmu)
+        self.time, self.own, self.events, self.longest = 0.0, np.array(own, float), 0, 0.0
+        self._inputs, self._own_rates, self._method = inputs, rates, method
+        self._tolerance = real(tolerance, "tolerance")
+        self._own_nominals = np.ones(len(self.own)) if nominals is None else np.array(nominals, float)
+        self._outputs, self._buffer = self._references(outputs), (c_double * STATES)()
+        self.messages: list[str] = []
+        self._callbacks = logging_callbacks(self.messages)
+        self._model: Any = self.Model(self.fmu.description, self.fmu.directory, self.fmu.library)
+        self._model.instantiate(callbacks=self._callbacks)
+        try:
+            self._model.setupExperiment()
+            for name, value in {**start, **inputs(0.0, self.own)}.items():
+                number, variable = self.fmu.known.number(name, value, "start"), self.fmu.variables[name]
+                is_real = variable.type == "Real"
+                put = self._model.setReal if is_real else self._model.setInteger
+                put([variable.valueReference], [number if is_real else int(number)])
+            self._model.enterInitializationMode()
+            self._model.exitInitializationMode()
+            self._update()
+        except BaseException as error:
+            self.close()
+            if isinstance(error, FMICallException):
+                raise FrictionError("; ".join(self.messages) or str(error)) from None
+            raise
+
+    def _references(self, names: Iterable[str]) -> Array[c_uint]:
+        found = [self.fmu.known.readable(name, "model exchange").valueReference for name in names]
+        return (c_uint * len(found))(*found)
+
+    def _update(self) -> None:
+        """The end of an event, and the time of the next one that the FMU announces."""
+        *_, announced, time = self._model.newDiscreteStates()
+        self._next_event = time if announced else np.inf
+        self._model.enterContinuousTimeMode()
+
+    def _set_inputs(self) -> None:
+        values = self._inputs(self.time, self.own)
+        if values:
+            self._model.setReal(self._references(values), list(values.values()))
+
+    def _put(self, t: float, y: np.ndarray) -> None:
+        self.time, self.own = t, y[STATES:]
+        self._model.setTime(t)
+        self._model.setContinuousStates((c_double * STATES)(*y[:STATES]), STATES)
+        self._set_inputs()
+
+    def _rates(self, t: float, y: np.ndarray) -> list[float]:
+        self._put(t, y)
+        self._model.getDerivatives(self._buffer, STATES)
+        rates = list(self._buffer)
+        return [*rates, *self._own_rates(t, self.own, *self._model.getReal(self._outputs))]
+
+    def _signs(self, t: float, y: np.ndarray) -> list[bool]:
+        self._put(t, y)
+        self._model.getEventIndicators(self._buffer, STATES)
+        return [indicator > 0.0 for indicator in self._buffer]
+
+    def advance(self, stop: float) -> None:
+        """To the time stop [s], by way of the events. An event is where an indicator has its new sign."""
+        try:
+            while self.time < stop:
+                self._to_an_event(min(stop, self._next_event))
+        except FMICallException as error:
+            raise FrictionError("; ".join(self.messages) or str(error)) from None
+
+    def _to_an_event(self, end: float) -> None:
+        self._model.getContinuousStates(self._buffer, STATES)
+        y = np.array([*self._buffer, *self.own])
+        self._model.getNominalsOfContinuousStates(self._buffer, STATES)
+        atol = self._tolerance * np.array([*self._buffer, *self._own_nominals])
+        solver = self._method(self._rates, self.time, y, end, rtol=self._tolerance, atol=atol)
+        before, event = self._signs(self.time, y), False
+        while solver.status == "running" and not event:
+            if message := solver.step():
+                raise FrictionError(f"the integrator stopped at {self.time:g} s: {message}")
+            t, y, low = solver.t, solver.y, solver.t_old
+            self.longest = max(self.longest, t - low)
+            event = self._signs(t, y) != before
+            if event:
+                course = solver.dense_output()
+                while low < (middle := 0.5 * (low + t)) < t:
+                    low, t = (middle, t) if self._signs(middle, course(middle)) == before else (low, middle)
+                y = course(t)
+            self._put(t, y)
+            event |= bool(self._model.completedIntegratorStep()[0])
+        if event or self.time >= self._next_event:
+            self.event()
+
+    def event(self) -> None:
+        """An event now, as after an input that jumps."""
+        self.events += 1
+        self._model.enterEventMode()
+        self._set_inputs()
+        self._update()
+
+    def get(self, name: str) -> float:
+        """The value of any variable of type Real now, SI units."""
+        return float(self._model.getReal(self._references([name]))[0])
+
+    def close(self) -> None:
+        """Frees the instance."""
+        if self._model.component is not None:
+            self._model.fmi2FreeInstance(self._model.component)
+            self._model.component = None
