@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import brentq
 
 from frictioncontact import command as shared
 from frictioncontact.doubts import warn_of
@@ -24,6 +25,11 @@ if TYPE_CHECKING:
 
 FORCE, TRANSVERSE = "F_t_settled", "F_y_settled"
 SCALES = ("vibration.V_1", "vibration.V_2", "friction.V_S")  # of velocities
+LEAST, GROWTH, FARTHEST = (
+    0.01,
+    1.1,
+    1e4,
+)  # amplitudes that are tried: first and last over V, each over the last
 NEAR = 1e-12  # of their scale: a change of the force within it is a jump
 
 
@@ -134,6 +140,32 @@ class FrictionLaw:
             for name, value in zip(arrays, values, strict=True):
                 self._session.set(name, float(value))
             yield
+
+    def amplitude_for(self, reduction: float, V: float, **inputs: float) -> float:
+        """The least vibration.V_1 [m/s] that lowers the force by a part of the force without vibration.V_1.
+
+        reduction  from 0 to 1: 0.6 leaves 40 % of the force
+        V          velocity, m/s
+        inputs     as in a call, numbers
+        raises     UserError: no amplitude up to FARTHEST times the velocity does; and as in a call
+        """
+        if not 0.0 < reduction < 1.0:
+            raise UserError(f"reduction = {reduction}: must be between 0 and 1")
+        name, before = SCALES[0], self._session.get(SCALES[0])
+
+        def left(amplitude: float) -> float:
+            self._session.set(name, float(amplitude))
+            return float(self(V, **inputs))
+
+        try:
+            aim, low, high = (1.0 - reduction) * left(0.0), 0.0, LEAST * abs(V)
+            while abs(left(high)) > abs(aim):
+                low, high = high, GROWTH * high
+                if not high <= FARTHEST * abs(V):
+                    raise UserError(f"no vibration.V_1 up to {low:.3g} m/s lowers the force by {reduction:g}")
+            return float(brentq(lambda amplitude: left(amplitude) - aim, low, high, rtol=1e-9))
+        finally:
+            self._session.set(name, before)
 
     def plot(self, V: npt.ArrayLike | None = None, **inputs: float) -> Figure:
         """A figure of the force and of its derivative against the velocity. Needs frictioncontact[plot].

@@ -29,6 +29,19 @@ SOFT = {"vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
 
 
 class TestLaw:
+    def test_the_amplitude_for_a_reduction(self, fmu_path: Path) -> None:
+        """Coulomb's mean is (2/pi) F_C asin(V / V_1); the law is as before afterwards."""
+        law = fc.friction_law(COULOMB, fmu=fmu_path)
+        before = law(0.1)
+        for reduction in (0.1, 0.6, 0.99):
+            right = 0.1 / np.sin(0.5 * np.pi * (1.0 - reduction))
+            assert law.amplitude_for(reduction, 0.1) == pytest.approx(right, rel=1e-6)
+        assert law(0.1) == before
+        with pytest.raises(fc.UserError, match=r"up to .* m/s lowers the force by 0\.99999"):
+            law.amplitude_for(0.99999, 0.1)
+        with pytest.raises(fc.UserError, match="reduction = 60: must be between 0 and 1"):
+            law.amplitude_for(60, 0.1)
+
     def test_coulomb_s_law_and_its_derivative(self, fmu_path: Path) -> None:
         """(2 / pi) F_C asin(V / V_1), in the shape of the velocities."""
         V = np.array([[0.1, 0.5], [1.0, -0.3]])
