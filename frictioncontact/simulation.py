@@ -96,7 +96,7 @@ def samples(
     units = known.units(("input",))
     names = ", ".join(units)
     measured = {f"{name}{SUFFIX}": unit for name, unit in OWN.items()}
-    table = read(source, "inputs", {**units, **OWN, **measured}, "input of the FMU", columns)
+    table = read(source, "inputs", {**units, **OWN, **measured}, "input of the FMU", columns, is_log=True)
     found = {name: each for name, each in table.numbers().items() if name in (*units, TIME, POSITION)}
     where = table.where
     if TIME not in found or len(found) < 2:

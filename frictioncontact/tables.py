@@ -8,11 +8,12 @@ tabs or spaces, decimal commas, a preamble, and a row of units below the header.
 from __future__ import annotations
 
 import csv
+import gzip
 import os
 import re
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,9 +35,20 @@ HEADING = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\)|\s(?:in|/)\s
 COMMA, POINT = (re.compile(rf"[-+]?\d*{mark}\d*(?:e[-+]?\d+)?", re.IGNORECASE) for mark in (",", r"\."))
 SEPARATORS = (";", "\t", ",", " ")
 FIRST = 1000  # lines in which the header is
-TIME, POSITION = "time", "position"
-OWN = {TIME: "s", POSITION: "m", "F_t": "N", "F_t_mean": "N"}  # columns that are no inputs or parameters
+TIME, POSITION, ORDER = "time", "position", "order"
+# Columns that are no inputs or parameters.
+OWN = {TIME: "s", POSITION: "m", "F_t": "N", "F_t_mean": "N", ORDER: "1"}
 SUFFIX = ".uncertainty"
+# What logs call them, in small letters and without marks; F_t is F_t_mean without time and position.
+LOGS = {
+    TIME: "time t elapsedtime zeit",
+    POSITION: "position pos disp displacement stroke weg x",
+    "F_t": "force fx ft ff friction frictionforce tangentialforce kraft",
+    "V": "v velocity vel speed",
+    "load": "load normal normalforce normalload fn fz",
+}
+ALIASES = {word: name for name, words in LOGS.items() for word in words.split()}
+EMPTY = ("", "nan", "na", "n/a", "-", "--", "null")  # cells without a value, in small letters
 
 
 def accepted(variables: Mapping[str, ScalarVariable]) -> dict[str, str]:
@@ -96,14 +108,20 @@ class Table:
 
 
 def table(
-    source: Source, where: str, units: Mapping[str, str], what: str, named: Mapping[str, str] | None = None
+    source: Source,
+    where: str,
+    units: Mapping[str, str],
+    what: str,
+    named: Mapping[str, str] | None = None,
+    is_log: bool = False,
 ) -> Table:
     """A table whose columns are some of those with these units; UserError where a heading is wrong.
 
-    what: what the names are, for errors. named: "NAME" or "NAME [UNIT]" -> heading of the table; then other
-    columns are left out, with a warning.
+    what: what the names are, for errors. named: "NAME" or "NAME [UNIT]" -> heading of the table. is_log: a
+    log as some instrument wrote it. What it calls otherwise is recognized, and what is not is left out; so
+    are rows without a value. A warning tells each.
     """
-    lines = None
+    lines: list[int] | None = None
     if isinstance(source, (str, os.PathLike)):
         where, places, headings, cells, lines = _of_file(path_of(source, where), {*units, *_others(named)})
     elif isinstance(source, Mapping) or hasattr(source, "columns"):
@@ -117,7 +135,11 @@ def table(
             f"or a pandas frame{hint}"
         )
     found: dict[str, Column] = {}
-    others, idle = _others(named), []
+    others, said = _others(named), []
+    if is_log:
+        taken = _taken(headings, units, {name for name, _ in others.values()})
+        said = [f"{where}: column {shown(heading)} is taken as {name}" for name, heading in taken.items()]
+        others = _others(taken) | others
     for cell, place, values in zip(headings, places, cells, strict=True):
         name, unit = _parted(cell)
         if asked := others.pop(cell, None) or others.pop(name, None):
@@ -127,8 +149,9 @@ def table(
         if name in units:
             size = 1.0 if unit is None else factor(unit, units[name], f"{place}: {name}")
             found[name] = Column(cell, size, values)
-        elif named:
-            idle.append(f"{place}: column {shown(cell)} is not used")
+        elif is_log or named:
+            hint = did_you_mean(name, units, likeness=0.7)
+            said.append(f"{place}: column {shown(cell)} is not used{hint}")
         elif cell and not name:
             raise UserError(f"{place}: heading {cell!r} is not of the form 'name [unit]' or 'name'")
         elif cell:  # and not an index
@@ -138,12 +161,47 @@ def table(
     for missing, (name, _) in others.items():
         there = ", ".join(headings)
         raise UserError(f"column {name}: there is no heading {shown(missing)}; these are: {there}")
-    warn(idle)
-    read = Table(where, found, lines)
-    for name, column in found.items() if lines is not None else ():
-        if "" in column.cells:
-            raise UserError(f"{read.place(name, column.cells.index(''))}: no value")
-    return read
+    if lines is not None and found:
+        rows = list(zip(*(column.cells for column in found.values()), strict=True))
+        empty = [any(cell.lower() in EMPTY for cell in row) for row in rows]
+        if any(empty) and not is_log:
+            k = empty.index(True)
+            name = next(name for name, column in found.items() if column.cells[k].lower() in EMPTY)
+            raise UserError(f"{Table(where, found, lines).place(name, k)}: no value")
+        if any(empty):
+            said.append(f"{where}: {sum(empty)} of {len(rows)} rows have no value and are left out")
+            kept = [k for k, is_empty in enumerate(empty) if not is_empty]
+            lines = [lines[k] for k in kept]
+            found = {n: replace(one, cells=[one.cells[k] for k in kept]) for n, one in found.items()}
+    warn(said)
+    return Table(where, found, lines)
+
+
+def _taken(headings: Sequence[str], units: Mapping[str, str], given: Collection[str]) -> dict[str, str]:
+    """Name, or "NAME [UNIT]" -> the heading that is taken as it; UserError where two are."""
+    names = {_parted(heading)[0] for heading in headings}
+    found: dict[str, str] = {}
+    for heading in headings:
+        name, unit = _parted(heading)
+        meant, after = _meant(name)
+        if meant is None or name in units or meant in {*names, *given}:
+            continue
+        if twice := next((other for key, other in found.items() if _parted(key)[0] == meant), None):
+            raise UserError(f"{shown(twice)} and {shown(heading)} look like {meant}; name one by an option")
+        unit = unit or after
+        found[meant if unit is None else f"{meant} [{unit}]"] = heading
+    if not {TIME, POSITION} & {*names, *given, *(_parted(key)[0] for key in found)}:
+        found = {re.sub("^F_t", "F_t_mean", key): heading for key, heading in found.items()}
+    return {key: heading for key, heading in found.items() if _parted(key)[0] in units}
+
+
+def _meant(name: str) -> tuple[str | None, str | None]:
+    """What a log means by a heading, and the unit at its end, as in time_s."""
+    for text, unit in ((name, None), name.rpartition("_")[::2]):
+        meant = ALIASES.get(re.sub(r"[^a-z]", "", text.lower()))
+        if meant is not None and (unit is None or is_unit(unit)):
+            return meant, unit
+    return None, None
 
 
 def in_SI(values: Mapping[Any, Any], units: Mapping[str, str], where: str) -> dict[Any, Any]:
@@ -185,8 +243,9 @@ def _of_file(
         raise UserError(f"{path}: is not a CSV file: {error}") from None
     if not any(headings):
         raise UserError(f"{path}: no header row")
-    if rows and all(
-        re.match(r"[^\d+\-.,]", word) and is_unit(word.strip("[]()")) for word in rows[0][1] if word
+    words = [word for word in rows[0][1] if word] if rows else []
+    if any(is_unit(word.strip("[]()")) for word in words) and all(
+        re.match(r"[^\d+\-.,]", word) for word in words
     ):
         headings = [
             f"{name} [{unit.strip('[]()')}]" for name, unit in zip(headings, rows.pop(0)[1], strict=False)
@@ -207,6 +266,8 @@ def _text(path: Path) -> str:
         content = path.read_bytes()
     except OSError as error:
         raise UserError(f"{path}: {error.strerror}") from None
+    if content[:2] == b"\x1f\x8b":
+        content = gzip.decompress(content)
     wide = content[:2] in (b"\xff\xfe", b"\xfe\xff")
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
         text = content.decode(encoding, errors="replace")
@@ -227,7 +288,9 @@ def _header(lines: Sequence[tuple[int, str]], known: Collection[str]) -> tuple[i
             for separator in SEPARATORS:
                 with suppress(csv.Error):  # of a preamble
                     cells = _cells(line, separator)
-                    count = sum(cell in known or _parted(cell)[0] in known for cell in cells)
+                    sure = [{cell, _parted(cell)[0]} & {*known} for cell in cells]
+                    likely = [_meant(_parted(cell)[0])[0] for cell in cells]
+                    count = sum(1.0 if a else 0.9 if b else 0.0 for a, b in zip(sure, likely, strict=True))
                     most, place = (count, (k, separator)) if count > most else (most, place)
         if most:
             return place
@@ -261,6 +324,8 @@ def factor(unit: str, si: str, where: str) -> float:
     if unit == si:
         return 1.0
     given, wanted = _root(unit), _root(si)
+    if given is None or given[1] != wanted[1]:
+        given = _root(unit.lower())  # a heading in capitals
     if given is None or given[1] != wanted[1]:
         raise UserError(f"{where} takes {f'a unit like {si}' if si != '1' else 'no unit'}, not {shown(unit)}")
     return given[0] / wanted[0]

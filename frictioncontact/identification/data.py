@@ -15,15 +15,17 @@ import numpy as np
 from scipy.interpolate import make_smoothing_spline
 from scipy.optimize import brentq
 
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, warn
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.tables import OWN, POSITION, SUFFIX, TIME, accepted, table
+from frictioncontact.tables import ORDER, OWN, POSITION, SUFFIX, TIME, accepted, table
 
 if TYPE_CHECKING:
     from frictioncontact.tables import Source
 
 MEASURED, FORCE = "F_t_mean", "F_t"
 LOAD = "load"
+TIMED = ("V_1", "V_2", "a_d", "sigma_1", "sigma_2", "V_S")  # why a law needs the time
+FAR = 0.1  # m: a loop of presliding and sliding is shorter
 SMALL = 0.03  # of a step: a scatter of a position that does not matter, or the curve of an exact one
 MEDIAN = 0.6745  # of the size of normal noise with a standard deviation of 1
 FOLLOWS = {"contact.input": "Load", "friction.limit": "Load"}  # from a column or a constant load
@@ -47,6 +49,7 @@ class Measurements:
     force: list[float]  # N
     uncertainty: list[float] | None  # N
     uncertain: tuple[Uncertain, ...] = ()
+    order: list[float] | None = None  # in which they were measured, where a column says it
 
     def column(self, name: str) -> np.ndarray:
         return np.array([float(row.get(name, 0.0)) for row in self.conditions])
@@ -69,6 +72,7 @@ class Series:
     position: np.ndarray | None = None
     told: np.ndarray | None = None  # the samples whose force is fitted; None: all
     scatter: float = 0.0  # m, of the measured position, which is smoothed by as much
+    is_timed: bool = True  # or each row counts as a second, of a law that needs no time
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -76,6 +80,10 @@ class Series:
 
     def column(self, name: str) -> np.ndarray:
         return np.array([float(self.constants.get(name, 0.0))])
+
+    def moved(self, position: np.ndarray) -> Series:
+        """With another position."""
+        return replace(self, position=position, V=np.gradient(position, self.time, edge_order=2))
 
     def changed(self, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Series:
         """With other constants."""
@@ -107,11 +115,15 @@ def read(
     """
     units = {**OWN, **accepted(fmu.variables)}
     units |= {f"{name}{SUFFIX}": unit for name, unit in units.items()}
-    found = table(source, "data", units, "variable that a table of measurements may hold", columns)
+    found = table(source, "data", units, "variable of a table of measurements", columns, is_log=True)
     names, where = list(found.columns), found.where
-    is_series = TIME in names
+    is_series = TIME in names or POSITION in names
     _check(where, names, constants, is_series)
-    measured = found.numbers([name for name in names if name == LOAD or name.endswith(SUFFIX)])
+    positive = [name for name in names if (name == LOAD and not is_series) or name.endswith(SUFFIX)]
+    measured = found.numbers(positive)
+    if is_series and LOAD in names and (open_ := measured[LOAD] <= 0.0).any():
+        warn([f"{where}: {open_.sum()} of {len(open_)} rows have no load and are left out"])
+        measured = {name: values[~open_] for name, values in measured.items()}
     if not len(measured[names[0]]):
         raise UserError(f"{where}: no rows of numbers")
     shared = with_load(names, constants)
@@ -135,14 +147,17 @@ def _check(path: str, names: Sequence[str], constants: Mapping[str, Any], is_ser
     measured = FORCE if is_series else MEASURED
     if measured not in names:
         raise UserError(f"{path}: column '{measured} [N]' is missing")
+    needs = [n for n, value in constants.items() if n.rpartition(".")[2] in TIMED and value]
+    if is_series and TIME not in names and needs:
+        raise UserError(f"{path}: column 'time [s]' is missing, and {needs[0]} needs it")
     if is_series and (POSITION in names) == ("V" in names):
         raise UserError(f"{path}: a series in time needs either 'position [m]' or 'V [m/s]'")
     if not is_series and "V" not in names and "V" not in constants:
         raise UserError(f"{path}: column 'V [m/s]' is missing, and no start value of V gives it")
-    for name in (FORCE, POSITION) if not is_series else (MEASURED,):
-        if name in names:
-            where = "a series, with a column 'time [s]'" if not is_series else "rows of means, without time"
-            raise UserError(f"{path}: {name} is for {where}")
+    other = MEASURED if is_series else FORCE
+    if other in names:
+        where = "rows of means, without time" if is_series else "a series, with a column 'time [s]'"
+        raise UserError(f"{path}: {other} is for {where}")
     if LOAD in names and ("d" in names or "d" in constants):
         raise UserError(f"{path}: load and d both give the separation; keep one")
 
@@ -150,7 +165,7 @@ def _check(path: str, names: Sequence[str], constants: Mapping[str, Any], is_ser
 def _rows(
     fmu: FrictionFmu, measured: dict[str, list[float]], constants: dict[str, Any], stated: Sequence[Stated]
 ) -> Measurements:
-    force = measured[MEASURED]
+    force, order = measured[MEASURED], measured.pop(ORDER, None)
     names = tuple(name for name in measured if name != MEASURED and not name.endswith(SUFFIX))
     conditions = [{**constants, **{name: measured[name][k] for name in names}} for k in range(len(force))]
     uncertainty = measured.get(MEASURED + SUFFIX)
@@ -178,7 +193,7 @@ def _rows(
             f"the uncertainty of {uncertain[0].name} can't be weighed without that of {MEASURED}: "
             f"give a column '{MEASURED}{SUFFIX} [N]' or state it"
         )
-    return Measurements(names, conditions, force, uncertainty, tuple(uncertain))
+    return Measurements(names, conditions, force, uncertainty, tuple(uncertain), order)
 
 
 def _series(
@@ -188,12 +203,18 @@ def _series(
     constants: dict[str, Any],
     stated: Sequence[Stated],
 ) -> Series:
+    is_timed = TIME in columns
+    if is_timed:
+        columns = _in_order(path, columns)
+    else:
+        columns[TIME] = np.arange(1.0 * len(columns[FORCE]))
+        warn([f"{path}: no time: a delay, a drift and hum are not seen, and each row counts as 1 s"])
     time, force = columns.pop(TIME), columns.pop(FORCE)
     if len(time) < 3:
         raise UserError(f"{path}: a series needs at least 3 rows")
-    backward = np.flatnonzero(np.diff(time) <= 0.0)
-    if len(backward):
-        raise UserError(f"{path}, row {backward[0] + 2}: time must grow from row to row")
+    if np.ptp(columns.get(POSITION, 0.0)) > FAR:
+        span = f"{np.ptp(columns[POSITION]):.3g} m, an unlikely magnitude"
+        warn([f"{path}: position spans {span}; a unit follows the name, as in 'position [um]'"])
     uncertainty = columns.pop(FORCE + SUFFIX, None)
     for one in stated:
         if one.name != FORCE:
@@ -213,7 +234,18 @@ def _series(
                 "give it as a start value"
             )
     told = _told(V) if constants.get("friction.model") == "Coulomb" else None
-    return Series(time, V, columns, force, constants, uncertainty, position, told, scatter)
+    return Series(time, V, columns, force, constants, uncertainty, position, told, scatter, is_timed)
+
+
+def _in_order(path: str, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Sorted by time, with the mean of rows of one time."""
+    steps = np.diff(columns[TIME])
+    if (steps > 0.0).all():
+        return columns
+    times, place, count = np.unique(columns[TIME], return_inverse=True, return_counts=True)
+    same = f"; {np.sum(count > 1)} times are there more than once, and averaged" if (count > 1).any() else ""
+    warn([f"{path}: time falls or stands at {np.sum(steps <= 0.0)} rows, which are sorted{same}"])
+    return {name: np.bincount(place, each) / count for name, each in columns.items()} | {TIME: times}
 
 
 def _told(V: np.ndarray) -> np.ndarray:

@@ -162,3 +162,66 @@ def test_samples_beyond_the_end_are_told(fmu_path: Path) -> None:
         fc.FrictionWarning, match="inputs: 2 of 3 samples are after stop = 1 s; the last is at 1000 s"
     ):
         fc.simulate(stop=1.0, step=0.1, inputs=drive, fmu=fmu_path)
+
+
+RECORD = {"time": [0.0, 1e-3, 2e-3], "position": [1e-6, 2e-6, 4e-6], "F_t": [1.0, 2.5, -3.0]}
+ROWS_OF_MEANS = {"V": [1e-3, 2e-3, 4e-3], "F_t_mean": [1.0, 2.5, -3.0]}
+LOGS: dict[str, tuple[str, dict[str, list[float]], str]] = {
+    "capitals": ("TIME (MS),DISP. (UM),FX (N)\n0,1,1\n1,2,2.5\n2,4,-3\n", RECORD, "'FX (N)' is taken as F_t"),
+    "short": ("t;pos;Force\n0;1e-6;1\n1e-3;2e-6;2.5\n2e-3;4e-6;-3\n", RECORD, "'pos' is taken as position"),
+    "units at the end": ("Time_ms,x_um,Force_mN\n0,1,1e3\n1,2,2500\n2,4,-3e3\n", RECORD, "taken as F_t [mN]"),
+    "a preamble and units below": (
+        '"Rig 3","2026-02-03"\n"Time","Displacement","Force","Temp."\n"(s)","(mm)","(kN)","(°C)"\n'
+        '"0","0.001","0.001","21"\n"0.001","0.002","0.0025",""\n"0.002","0.004","-0.003","21"\n',
+        RECORD,
+        "'Temp. [°C]' is not used",
+    ),
+    "cells without a value": (
+        "Time [s],Disp. [um],Force [N],RPM\n0,1,1,\n1e-3,2,2.5,\n1.5e-3,,2,\n1.7e-3,3,NaN,\n2e-3,4,-3,\n",
+        RECORD,
+        "2 of 5 rows have no value and are left out",
+    ),
+    "means": ("Speed [mm/s],Force\n1,1\n2,2.5\n4,-3\n", ROWS_OF_MEANS, "'Force' is taken as F_t_mean"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("log", LOGS)
+def test_logs_are_read_as_they_are(tmp_path: Path, log: str) -> None:
+    text, expected, said = LOGS[log]
+    path = tmp_path / "log.csv"
+    path.write_text(text, encoding="utf-8")
+    units = {"time": "s", "position": "m", "F_t": "N", "F_t_mean": "N", "V": "m/s", "load": "N"}
+    with pytest.warns(fc.FrictionWarning, match=re.escape(said)):
+        found = table(path, "data", units, "column", is_log=True).numbers()
+    assert {name: values.tolist() for name, values in found.items()} == {
+        name: pytest.approx(values, rel=1e-14) for name, values in expected.items()
+    }
+
+
+def test_a_log_that_may_mean_two_things_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t,pos,disp,F_t\n0,1,1,1\n")
+    with pytest.raises(fc.UserError, match="'pos' and 'disp' look like position; name one by an option"):
+        table(path, "data", {"position": "m", "time": "s", "F_t": "N"}, "column", is_log=True)
+
+
+def test_times_of_a_log_in_any_order(fmu_path: Path) -> None:
+    """Sorted, and doubles averaged: the fit is that of the log in order."""
+    x = np.concatenate([np.linspace(0, 20e-6, 41), np.linspace(20e-6, -20e-6, 41)[1:]])
+    force = np.clip(np.concatenate([2e6 * x[:41], 20 + 2e6 * (x[41:] - 20e-6)]), -20, 20)
+    time, start = 0.01 * np.arange(len(x)), {**LAW, "contact.sigma": 2e6}
+    log = {"time": time, "position": x, "F_t": force}
+    mixed = [*np.random.default_rng(1).permutation(len(x)), 3]
+    data = {name: each[mixed] for name, each in log.items()}
+    with pytest.warns(fc.FrictionWarning, match="time falls or stands at .* 1 times are there more than"):
+        found = fc.identify(data, "F_C", start=start, fmu=fmu_path)
+    assert found.values["F_C"] == pytest.approx(20.0, rel=1e-4)
+    with pytest.warns(fc.FrictionWarning, match="no time: a delay, a drift and hum are not seen"):
+        found = fc.identify({"position": x, "F_t": force}, "F_C", start=start, fmu=fmu_path)
+    assert found.values["F_C"] == pytest.approx(20.0, rel=1e-4) and "late" not in str(found)
+    with pytest.raises(fc.UserError, match=r"is missing, and friction\.sigma_2 needs it"):
+        fc.identify(
+            {"position": x, "F_t": force}, "F_C", start=start | {"friction.sigma_2": 5.0}, fmu=fmu_path
+        )
+    with pytest.warns(fc.FrictionWarning, match="position spans 40 m, an unlikely magnitude"):
+        fc.identify(log | {"position": 1e6 * x}, "F_C", start=start, fmu=fmu_path)
