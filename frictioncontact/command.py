@@ -8,6 +8,7 @@ import importlib.util
 import os
 import re
 import sys
+import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from frictioncontact.values import Variables
 
+PAUSE = 10.0  # s
 TABLE = 120  # characters, of the widest table
 called_as: str | None = None  # what a file of scripts/ calls the command of its user
 
@@ -177,6 +179,20 @@ def progress_bar() -> Iterator[Progress]:
     columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         yield progress
+
+
+def teller(bar: Progress) -> Callable[[str], None]:
+    """Shows a text as what is begun; where there is no terminal a line every PAUSE seconds."""
+    task, told = bar.add_task("", total=None), time.monotonic()
+
+    def tell(text: str) -> None:
+        nonlocal told
+        bar.update(task, description=text)
+        if not bar.console.is_terminal and time.monotonic() - told > PAUSE:
+            print(text, file=sys.stderr, flush=True)
+            told = time.monotonic()
+
+    return tell
 
 
 def shown(path: Path) -> str:

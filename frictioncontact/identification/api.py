@@ -19,13 +19,14 @@ from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
 from frictioncontact.identification.experiment import (
     INSTRUMENT,
+    V_1,
     Experiment,
     Parameter,
     Record,
     Rows,
     parameter,
 )
-from frictioncontact.identification.faults import hidden, remedies, shapes
+from frictioncontact.identification.faults import hidden, remedies, rivals, shapes
 from frictioncontact.identification.fit import Fit, Tell, search, silent, with_profiles
 from frictioncontact.identification.judge import judge
 from frictioncontact.identification.show import show
@@ -68,13 +69,16 @@ class Identification:
 
     @property
     def remedies(self) -> list[str]:
-        """With what else the data fit, in words: a fault of the instrument, another law or amplitude."""
+        """With what else the data fit, in words: a fault of the instrument, another law or amplitude.
+
+        Where the law fits, with what the data fit as well.
+        """
         return self.fit.remedies
 
     @property
     def nuisances(self) -> dict[str, tuple[float, float]]:
         """What was asked of the instrument, with half-widths of 95 %: offset [N], drift [N/s or N per row],
-        delay [s], and a sign of -1 where the other one fits better."""
+        delay [s], a factor of the amplitude, and a sign of -1 where the other one fits better."""
         found = dict(self.fit.nuisances)
         return found | ({"sign": (-1.0, 0.0)} if self.experiment.sign < 0.0 else {})
 
@@ -120,11 +124,13 @@ def identify(
                row a steady mean, F_t_mean with V and any other input or parameter; or a series in time (that
                the vibration's phase refers to), F_t with position or V. NAME.uncertainty is the standard
                uncertainty of a column
-    fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
+    fit        names of the parameters, "NAME", "NAME=START" or "NAME=LOW..HIGH", that it stays in; or a
+               mapping of names to START, (LOW, HIGH) or None
     start      start values that all rows share, SI units; of an enumeration an item or its number
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")
     nuisance   faults of the instrument to fit beside the parameters: "offset" and "drift" of the force,
-               "delay" of the force in a record, "sign" (1 or -1, whichever fits better)
+               "delay" of the force in a record, "sign" (1 or -1, whichever fits better), "amplitude" (one
+               factor of vibration.V_1 in all rows). A column "order" says when each row was measured
     columns    headings of other names: "V" or "V [mm/s]" -> the heading in the data
     fmu        another .fmu file of this model
     tell       a function that is called with the name of each stage
@@ -144,12 +150,11 @@ def identify(
     stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
     rows = read(data, loaded, constants, stated, columns)
     instrument = _instrument(nuisance, rows)
-    asked = fit.items() if isinstance(fit, Mapping) else ((name, None) for name in _names(fit))
     largest = float(np.max(np.abs(rows.force)))
     if largest == 0.0:
         raise UserError("every measured force is 0 N, and tells nothing about any parameter")
     usual = {"F_C": largest, **constants}  # a limit of another size than the forces has no slope towards them
-    parameters = [_parameter(loaded, name, value, usual) for name, value in asked]
+    parameters = [_parameter(loaded, name, value, usual) for name, value in _asked(fit).items()]
     if not parameters:
         raise UserError("fit: names no parameter")
     _check(parameters, rows, constants)
@@ -178,6 +183,8 @@ def fitted(experiment: Experiment, tell: Tell = silent) -> Fit:
         tell("what explains the misfit")
         result.remedies.extend(remedies(experiment, result))
     elif result.degrees > 0:
+        tell("what explains the data as well")
+        result.remedies.extend(rivals(experiment, result))
         result.hidden.extend(hidden(experiment, result, of_faults))
     return result
 
@@ -187,19 +194,27 @@ def _instrument(nuisance: Iterable[str], rows: Measurements | Series) -> list[st
     for name in names:
         if name not in INSTRUMENT:
             raise UserError(f"nuisance {name}: must be one of {', '.join(INSTRUMENT)}")
-    if "delay" in names and not isinstance(rows, Series):
+    if "delay" in names and not (isinstance(rows, Series) and rows.is_timed):
         raise UserError("nuisance delay: is for a series, with a column 'time [s]'")
+    if "amplitude" in names and (isinstance(rows, Series) or not np.any(rows.column(V_1))):
+        raise UserError(f"nuisance amplitude: is for rows of means with a column {V_1}")
     return [name for name in INSTRUMENT if name in names]
 
 
-def _names(fit: Iterable[str]) -> list[str]:
+def _asked(fit: Asked) -> dict[str, float | tuple[float, float] | None]:
+    """Name -> start value, range or neither."""
+    if isinstance(fit, Mapping):
+        return dict(fit)
     if not isinstance(fit, Iterable):
         raise UserError(f"fit = {fit!r}: must be a name, names, or a mapping of names")
-    names = [fit] if isinstance(fit, str) else list(fit)
-    for name in names:
-        if names.count(name) > 1:
+    asked: dict[str, float | tuple[float, float] | None] = {}
+    for text in [fit] if isinstance(fit, str) else fit:
+        name, _, value = text.partition("=")
+        if name in asked:
             raise UserError(f"{name} is to be fitted twice")
-    return names
+        first, *second = [number(part, f"fit {text}") for part in value.split("..", 1)] if value else [None]
+        asked[name] = (first, *second) if second else first
+    return asked
 
 
 def _stated(fmu: FrictionFmu, name: str, value: float | str) -> Stated:

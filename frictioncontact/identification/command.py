@@ -6,12 +6,11 @@ from pathlib import Path
 
 from frictioncontact import command as shared
 from frictioncontact import resources
-from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.identification.api import DEFAULT, identify
 from frictioncontact.identification.experiment import INSTRUMENT
 from frictioncontact.identification.show import show
-from frictioncontact.values import assignments, number
+from frictioncontact.values import assignments
 
 DESCRIPTION = """\
 Fits any parameters of the FMU to measured friction by least squares. Says first, in words, whether the law
@@ -76,16 +75,15 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> None:
     with shared.progress_bar() as bar:
-        task = bar.add_task("", total=None)
         found = identify(
             options.csv,
-            fit_of(options.fit),
+            options.fit or DEFAULT,
             start=opened(options.fmu).known.assigned(options.set),
             uncertain=assignments(options.uncertain, "--uncertain"),
             nuisance=options.nuisance,
             columns=assignments(options.column, "--column"),
             fmu=options.fmu,
-            tell=lambda text: bar.update(task, description=text),
+            tell=shared.teller(bar),
         )
     show(shared.table_console(), found.experiment, found.fit)
     if not options.quick and shared.can_draw():
@@ -95,15 +93,3 @@ def run(options: argparse.Namespace) -> None:
         path = options.output / "identify.png"
         style.save(figures.picture(found.experiment, found.fit), path, path.with_suffix(".svg"))
         print(f"Written: {path} and .svg")
-
-
-def fit_of(words: Sequence[str] | None) -> dict[str, float | tuple[float, float] | None]:
-    """What --fit asks for: name -> start value, range or neither."""
-    asked: dict[str, float | tuple[float, float] | None] = {}
-    for text in words or DEFAULT:
-        name, _, value = text.partition("=")
-        if name in asked:
-            raise UserError(f"--fit names {name} twice")
-        parts = [number(part, f"--fit {text}") for part in value.split("..", 1)] if value else [None]
-        asked[name] = (parts[0], parts[1]) if len(parts) == 2 else parts[0]
-    return asked

@@ -3,7 +3,8 @@
 A point has a coordinate for each fitted parameter, and after them one for each nuisance: something else
 that is not known exactly, in standard deviations where it was measured (then its own residual holds it to
 what was measured), or in its unit where it is free. An instrument's nuisances lie between the forces of the
-law and what it measured: sign * F(t - delay) + offset + drift * (t - first t).
+law and what it measured: sign * F(t - delay) + offset + drift * (t - first t). That of the amplitude is the
+logarithm of a factor of vibration.V_1.
 """
 
 from __future__ import annotations
@@ -129,7 +130,8 @@ DIFFERENCE = 1e-3  # of a coordinate
 NUISANCE_DIFFERENCE = 1e-2  # of a nuisance's
 
 
-INSTRUMENT = ("offset", "drift", "delay", "sign")
+INSTRUMENT = ("offset", "drift", "delay", "sign", "amplitude")
+V_1 = "vibration.V_1"
 
 
 @dataclass(frozen=True)
@@ -172,14 +174,14 @@ class Experiment(ABC):
         self.low = np.array([p.to_coordinate(p.low) for p in self.parameters] + [-v for v in reach])
         self.high = np.array([p.to_coordinate(p.high) for p in self.parameters] + reach)
         self.problem = "no start value works"  # the FMU's last refusal
-        self._measured = [k for k, one in enumerate(self.nuisances) if one.measured]
+        self.measured = [k for k, one in enumerate(self.nuisances) if one.measured]
         self._groups = self._shifted_together()
 
     def _of_instrument(self) -> list[Nuisance]:
         size, span = float(np.abs(self.force).max()), float(np.ptp(self.time)) or 1.0
         step = span / max(len(self.time) - 1, 1)
-        scales = {"offset": 0.1 * size, "drift": 0.1 * size / span, "delay": step}
-        reach = {"delay": 0.25 * span / step}
+        scales = {"offset": 0.1 * size, "drift": 0.1 * size / span, "delay": step, "amplitude": 1.0}
+        reach = {"delay": 0.25 * span / step, "amplitude": math.log(10.0)}
         asked = [(name, scales[name]) for name in self.instrument if name != "sign"]
         return [Nuisance(0.0, False, None, name, scale, reach.get(name, math.inf)) for name, scale in asked]
 
@@ -220,12 +222,12 @@ class Experiment(ABC):
     @property
     def target(self) -> np.ndarray:
         """What was measured: forces [N], and zero for every nuisance that was."""
-        return np.concatenate([self.force, np.zeros(len(self._measured))])
+        return np.concatenate([self.force, np.zeros(len(self.measured))])
 
     @property
     def degrees(self) -> int:
         """Forces minus what is free."""
-        free = len(self.nuisances) - len(self._measured)
+        free = len(self.nuisances) - len(self.measured)
         return len(self.force) - len(self.parameters) - free
 
     def start(self, coordinates: Sequence[float]) -> np.ndarray:
@@ -256,7 +258,7 @@ class Experiment(ABC):
 
     def residuals(self, x: np.ndarray, target: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
         """Of forces and of measured nuisances at a point, in standard deviations where they are stated."""
-        own = x[len(self.parameters) :][self._measured] - target[len(self.force) :]
+        own = x[len(self.parameters) :][self.measured] - target[len(self.force) :]
         return np.concatenate([self.misfits(x[None, :], target, tolerance)[0], own])
 
     def slopes(self, x: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
@@ -273,13 +275,13 @@ class Experiment(ABC):
         up, down = up - here, here - down
         up, down = np.where(np.isnan(up), down, up), np.where(np.isnan(down), up, down)
         differences = np.nan_to_num(0.5 * (up + down)) / shifts.max(axis=1, keepdims=True) * self.weight
-        jacobian = np.zeros((rows + len(self._measured), len(x)))
+        jacobian = np.zeros((rows + len(self.measured), len(x)))
         for difference, columns in zip(differences, self._groups, strict=True):
             for j in columns:
                 row = self.nuisances[j - n].row if j >= n else None
                 i = slice(rows) if row is None else row
                 jacobian[i, j] = difference[i]
-        for k, j in enumerate(self._measured):
+        for k, j in enumerate(self.measured):
             jacobian[rows + k, n + j] = 1.0
         return jacobian
 
@@ -311,7 +313,7 @@ class Rows(Experiment):
     ) -> None:
         self.rows = rows
         nuisances = [Nuisance(0.0, True, u.row) for u in rows.uncertain]
-        super().__init__(fmu, parameters, rows.force, rows.uncertainty, nuisances, instrument=instrument)
+        super().__init__(fmu, parameters, rows.force, rows.uncertainty, nuisances, rows.order, instrument)
         names = {name for condition in rows.conditions for name in condition}
         self._conditions = {
             name: np.array([condition[name] for condition in rows.conditions]) for name in names
@@ -327,6 +329,8 @@ class Rows(Experiment):
             values[one.name] = values.get(one.name, float(self.fmu.variables[one.name].start)) + change
         for k, p in enumerate(self.parameters):
             values[p.name] = p.values(points[:, [k]])
+        if "amplitude" in self.places:
+            values[V_1] = self.value(values, V_1) * np.exp(self.nuisance(points, "amplitude"))
         values["V"] = np.broadcast_to(values["V"], (len(points), len(self.force)))
         return values
 

@@ -278,6 +278,9 @@ def _of_instrument(
     for name, k in experiment.places.items():
         scale = experiment.nuisances[k - len(experiment.parameters)].scale
         found[name] = scale * float(point[k]), scale * float(widths[k])
+        if name == "amplitude":
+            factor = math.exp(point[k])
+            found[name] = factor, factor * float(widths[k])
     return found
 
 

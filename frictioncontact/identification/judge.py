@@ -10,7 +10,7 @@ The least of the probabilities over all tests is held against the least of the d
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 
 import numpy as np
@@ -41,7 +41,8 @@ def misfits(
     experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray] = MappingProxyType({})
 ) -> list[str]:
     """What is wrong with a fit, in words. shapes: of faults, as of `suspicion`."""
-    rms = float(np.sqrt(np.mean(result.residuals**2)))
+    rms, friction = (float(np.sqrt(np.mean(each**2))) for each in (result.residuals, experiment.force))
+    size = f"the misfit, {rms:.3g} N rms ({100.0 * rms / friction:.2g} % of the friction)"
     if result.degrees <= 0 or np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
         return []
     if result.known:
@@ -50,8 +51,8 @@ def misfits(
         if chance < CHANCE:
             stated = float(np.sqrt(np.mean(experiment.weight**-2.0)))
             return [
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is larger than the stated "
-                f"uncertainties allow ({stated:.3g} N rms; probability {chance:.1e}). "
+                f"the law does not fit: {size}, is larger than the stated uncertainties "
+                f"allow ({stated:.3g} N rms; probability {chance:.1e}). "
                 "The intervals are those of a law that fits"
             ]
     elif experiment.word == "row" and (large := _large_parts(experiment, result)):
@@ -59,16 +60,15 @@ def misfits(
     chance, oddest = suspicion(experiment, result, shapes)
     if chance >= CHANCE:
         return []
-    size = f"the misfit, {rms:.3g} N rms, is no scatter: its differences {oddest} (probability {chance:.1e})"
-    if experiment.word == "sample":
-        scatter = min(scatter_of(experiment.force), scatter_of(result.residuals))
-        times = f"{rms / scatter:.3g} times" if scatter > 0.0 else "more than"
-        size = (
-            f"the misfit, {rms:.3g} N rms, is {times} the scatter of neighbouring samples, {scatter:.2g} N: "
-            f"its differences {oddest} (probability {chance:.1e}). "
-            f"The intervals count {result.correlated:.3g} samples as one"
-        )
-    return [f"the law does not fit: {size}"]
+    odd = f"its differences {oddest} (probability {chance:.1e})"
+    if experiment.word == "row":
+        return [f"the law does not fit: {size}, is no scatter: {odd}"]
+    scatter = min(scatter_of(experiment.force), scatter_of(result.residuals))
+    times = f"{rms / scatter:.3g} times" if scatter > 0.0 else "more than"
+    return [
+        f"the law does not fit: {size}, is {times} the scatter of neighbouring samples, {scatter:.2g} N: "
+        f"{odd}. The intervals count {result.correlated:.3g} samples as one"
+    ]
 
 
 def scatter_of(samples: np.ndarray) -> float:
@@ -185,9 +185,15 @@ def _minima(result: Fit) -> list[str]:
     return found
 
 
-CHANCE = 0.01  # of a law that fits to be doubted
+CHANCE = 0.005  # of a law that fits to be doubted
 DRAWS = 4000
 HELD = 4_000_000  # numbers of draws at a time
+MEMORY = 8  # samples: twice what a filter at a quarter of Nyquist's frequency makes alike
+BLOCKS = 40  # of samples, at least, where there are more samples
+HARMONICS = 5  # of the motion: a line there is no hum
+LINES = 3  # of hum, at most
+NEAR = 100  # places of the spectrum to each side, from whose median a line has to stand out
+STANDS_OUT = 25.0  # of white noise 1 of 1e5 records of 1000 samples has such a line
 FEW = 3  # rows for each value of a column whose values are groups, on average, at least
 
 # Of residuals of length 1, [draw, row] -> [draw]; large where they are no scatter.
@@ -199,24 +205,92 @@ def suspicion(experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarr
 
     shapes: of faults, what each would add to the forces.
     """
-    rows, total = len(experiment.force), len(result.slopes)
-    tests = _in_time(rows) if experiment.word == "sample" else _over_rows(experiment)
+    residuals, slopes = result.residuals * experiment.weight, result.slopes
+    rows, total, length = len(residuals), len(slopes), 1
+    if experiment.word == "sample":
+        length, drive = min(MEMORY, max(1, rows // BLOCKS)), motion(experiment)
+        slopes = np.hstack([slopes, _hum(experiment, residuals, drive)])
+        tests = _in_time(rows // length, length) | _with_the_motion(experiment, drive)
+    else:
+        tests = {words: (1, test) for words, test in _over_rows(experiment).items()}
+    left = _projection(slopes)
     for fault, shape in shapes.items():
-        seen = visible(experiment, result, shape)
+        seen = left(np.pad(shape * experiment.weight, (0, total - rows))[None])[0, :rows]
         if np.linalg.norm(seen) > 1e-6 * np.linalg.norm(shape * experiment.weight):
-            tests[f"have the shape of {fault}"] = _along(seen)
+            tests[f"have the shape of {fault}"] = length, _along(_averaged(seen, length))
 
     def values(residuals: np.ndarray) -> np.ndarray:
-        unit = residuals / np.linalg.norm(residuals, axis=1, keepdims=True)
-        return np.stack([test(unit) for test in tests.values()], axis=1)
+        means = {count: _averaged(residuals, count) for count in (1, length)}
+        unit = {count: each / np.linalg.norm(each, axis=1, keepdims=True) for count, each in means.items()}
+        return np.stack([test(unit[count]) for count, test in tests.values()], axis=1)
 
-    random, left, step = np.random.default_rng(0), _projection(result.slopes), max(1, HELD // total)
+    random, step = np.random.default_rng(0), max(1, HELD // total)
     sizes = [min(step, DRAWS - k) for k in range(0, DRAWS, step)]
     drawn = np.concatenate([values(left(random.standard_normal((n, total)))[:, :rows]) for n in sizes])
-    own = np.mean(drawn >= values((result.residuals * experiment.weight)[None, :]), axis=0)
+    own = np.mean(drawn >= values(left(np.pad(residuals, (0, total - rows))[None])[:, :rows]), axis=0)
     ranks = np.argsort(np.argsort(-drawn, axis=0), axis=0) + 1.0
     chance = float(np.mean(ranks.min(axis=1) / DRAWS <= own.min()))
     return max(chance, 1.0 / DRAWS), list(tests)[int(np.argmin(own))]
+
+
+def _averaged(each: np.ndarray, count: int) -> np.ndarray:
+    """Sums of so many neighbouring samples, which scatter as one does where it is white; the rest is left."""
+    whole = each.shape[-1] // count * count
+    return each[..., :whole].reshape(*each.shape[:-1], -1, count).sum(axis=-1) / math.sqrt(count)
+
+
+def spectrum(experiment: Experiment, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies [Hz], four to what the record resolves, and the power at each."""
+    time = experiment.time
+    even = np.interp(np.linspace(time[0], time[-1], len(time)), time, samples)
+    power = np.abs(np.fft.rfft(even, 4 * len(time))) ** 2
+    return np.arange(len(power)) * (len(time) - 1) / (4.0 * len(time) * np.ptp(time)), power
+
+
+def motion(experiment: Experiment) -> float:
+    """The frequency [Hz] of the motion: the strongest of its velocity."""
+    V = np.interp(experiment.time, experiment.rows.time, experiment.rows.V)
+    frequencies, power = spectrum(experiment, V - V.mean())
+    return float(frequencies[np.argmax(power)])
+
+
+def _waves(experiment: Experiment, frequencies: Iterable[float]) -> np.ndarray:
+    """Sines and cosines, [sample, wave]."""
+    turns = 2j * math.pi * (experiment.time - experiment.time.mean())
+    waves = [np.exp(frequency * turns) for frequency in frequencies]
+    return np.column_stack([part for wave in waves for part in (wave.real, wave.imag)])
+
+
+def _with_the_motion(experiment: Experiment, drive: float) -> dict[str, tuple[int, Statistic]]:
+    """The power at harmonics of the motion over that halfway between them: a filtered noise has as much."""
+
+    def power(count: int) -> Statistic:
+        at, between = (
+            np.linalg.qr(_waves(experiment, drive * (np.arange(1.0, count + 1.0) - shift)))[0]
+            for shift in (0.0, 0.5)
+        )
+        return lambda r: np.sum((r @ at) ** 2, axis=1) / np.sum((r @ between) ** 2, axis=1)
+
+    most = 0.5 * len(experiment.time) / max(drive * np.ptp(experiment.time), 1.0)
+    return {f"repeat with the motion, up to harmonic {k}": (1, power(k)) for k in (1, 3, 10) if k <= most}
+
+
+def _hum(experiment: Experiment, residuals: np.ndarray, drive: float) -> np.ndarray:
+    """Lines in the spectrum of the residuals that are no harmonics of the motion, as slopes [sample, slope].
+
+    A misfit of the law has the frequency of the motion and its first harmonics.
+    """
+    found, span = np.zeros((len(residuals), 0)), float(np.ptp(experiment.time))
+    phase = ((experiment.time - experiment.time.mean()) / span)[:, None]
+    for _ in range(LINES):
+        frequencies, power = spectrum(experiment, _projection(found)(residuals[None])[0])
+        away = np.abs(frequencies[:, None] - drive * np.arange(HARMONICS + 1.0)).min(axis=1)
+        k = int(np.argmax(power * (away > 1.0 / span)))
+        if power[k] < STANDS_OUT * np.median(power[max(0, k - NEAR) : k + NEAR]):
+            break
+        wave = _waves(experiment, frequencies[k : k + 1])
+        found = np.hstack([found, wave, phase * wave])
+    return found
 
 
 def visible(experiment: Experiment, result: Fit, shape: np.ndarray) -> np.ndarray:
@@ -239,16 +313,16 @@ def _along(direction: np.ndarray) -> Statistic:
     return lambda r: np.abs(r @ direction) / np.linalg.norm(direction)
 
 
-def _in_time(samples: int) -> dict[str, Statistic]:
-    """Sums over blocks of samples, of several lengths; the largest."""
+def _in_time(samples: int, length: int) -> dict[str, tuple[int, Statistic]]:
+    """Sums over blocks of samples, of several sizes; the largest. length: of what is one sample here."""
 
-    def blocks(length: int) -> Statistic:
-        whole = samples // length
-        return lambda r: np.sum(r[:, : whole * length].reshape(-1, whole, length).sum(axis=2) ** 2, axis=1)
+    def blocks(count: int) -> Statistic:
+        return lambda r: np.sum(_averaged(r, count) ** 2, axis=1)
 
-    lengths = [2**k for k in range(1, 12) if 2**k <= max(samples // 4, 2)]
-    found = {f"to {length} neighbouring samples are alike": blocks(length) for length in lengths}
-    return {**found, "are far larger at a sample than at others": lambda r: np.abs(r).max(axis=1)}
+    counts = [2**k for k in range(1, 12) if 2**k <= max(samples // 4, 2)]
+    found = {f"to {length * count} neighbouring samples are alike": blocks(count) for count in counts}
+    found["are far larger at a sample than at others"] = lambda r: np.abs(r).max(axis=1)
+    return {words: (length, test) for words, test in found.items()}
 
 
 def _over_rows(experiment: Experiment) -> dict[str, Statistic]:

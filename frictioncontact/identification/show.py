@@ -22,17 +22,19 @@ def show(console: Console, experiment: Experiment, result: Fit) -> None:
 
     for text in result.misfits:
         say(f"MISFIT: {text}\n")
-    for text in result.remedies:
-        say(f"PERHAPS {text}\n")
     if result.judged and not result.misfits:
         say("The law fits: its differences to the data look like their scatter.\n")
+    for text in result.remedies:
+        say(f"{'PERHAPS' if result.misfits else 'BUT'} {text}\n")
     console.print(_values(result))
     if experiment.word == "row":
         console.print(_rows(experiment, result))
     if len(result.parameters) > 1:
         console.print(_correlations(result))
     word = experiment.word
-    say(f"misfit: {np.sqrt(np.mean(result.residuals**2)):.3g} N rms over {len(result.residuals)} {word}s")
+    rms, friction = (np.sqrt(np.mean(each**2)) for each in (result.residuals, experiment.force))
+    percent = f"{100.0 * rms / friction:.2g} % of the friction"
+    say(f"misfit: {rms:.3g} N rms over {len(result.residuals)} {word}s, {percent}")
     if math.isfinite(result.deviation):
         say(f"scatter of one {word}: {result.deviation:.3g} N ({result.degrees} degrees of freedom)")
     if getattr(experiment.rows, "scatter", 0.0):
@@ -43,7 +45,8 @@ def show(console: Console, experiment: Experiment, result: Fit) -> None:
         ask = "state the uncertainty of the force (uncertain, --uncertain)"
         say(f"no misfit is seen, but whether the law fits is open: {ask}")
     if result.hidden:
-        say(f"these data would not show {' or '.join(result.hidden)} of a tenth: the parameters take it up")
+        hidden = ", ".join(result.hidden)
+        say(f"these data would not show {hidden}, each of a tenth: the parameters take it up")
     for warning in result.warnings:
         say(f"warning: {warning}")
 

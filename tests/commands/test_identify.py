@@ -148,8 +148,8 @@ def test_dry_rows_are_the_validation_s(fmu: FrictionFmu) -> None:
     assert sigma == pytest.approx(expected, rel=2e-3)
     assert f"{1e-6 * sigma:.2f} MN/m ({1e-6 * low:.2f} to {1e-6 * high:.2f})" in GUIDE
     page = " ".join((ROOT / "docs" / "tutorial" / "your-surface.md").read_text(encoding="utf-8").split())
-    assert "we assume 0.05 N." in page and "is not rejected. At 0.03 N it would be." in page
-    for uncertainty, faults in ((0.05, 0), (0.03, 1)):
+    assert "we assume 0.05 N." in page and "is not rejected. At 0.025 N it would be." in page
+    for uncertainty, faults in ((0.05, 0), (0.025, 1)):
         stated = {"F_t_mean": uncertainty}
         found = fc.identify(DRY, "contact.sigma", start=ELASTIC, uncertain=stated, fmu=fmu.path)
         assert len(found.misfits) == faults
@@ -224,21 +224,24 @@ def test_a_record_without_scatter_is_judged(fmu_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("V", "force", "said"),
+    ("V", "force", "order", "said"),
     [
-        (range(1, 9), range(8), "rows of neighbouring V are alike"),
-        ((3, 8, 1, 5, 7, 2, 6, 4), range(8), "have the shape of a drift of the force"),
-        ((3, 8, 1, 5, 7, 2, 6, 4), (2, 4, 0, 5, 1, 3, 7, 6), ""),
+        (range(1, 9), range(8), None, "rows of neighbouring V are alike"),
+        ((3, 8, 1, 5, 7, 2, 6, 4), range(8), range(8), "have the shape of a drift of the force"),
+        ((3, 8, 1, 5, 7, 2, 6, 4), range(8), None, ""),  # the order of rows alone says nothing
+        ((3, 8, 1, 5, 7, 2, 6, 4), (2, 4, 0, 5, 1, 3, 7, 6), range(8), ""),
     ],
 )
 def test_differences_with_a_trend_are_a_misfit(
-    fmu_path: Path, V: Sequence[int], force: Sequence[int], said: str
+    fmu_path: Path, V: Sequence[int], force: Sequence[int], order: Sequence[int] | None, said: str
 ) -> None:
     """Of one force, F_C, at eight velocities: measured ones grow with V, from row to row, or with neither."""
     data = {"V [cm/s]": 10.0 * np.array(V), "F_t_mean": 50.0 + np.array(force)}
-    found = fc.identify(data, "F_C", fmu=fmu_path).misfits
-    assert len(found) == bool(said)
-    assert all(said in text for text in found)
+    data |= {} if order is None else {"order": order}
+    found = fc.identify(data, "F_C", fmu=fmu_path)
+    assert len(found.misfits) == bool(said)
+    assert all(said in text for text in found.misfits)
+    assert any("drift" in text for text in found.remedies) == ("drift" in said)
 
 
 def test_scatter_is_seldom_suspicious() -> None:
@@ -255,3 +258,13 @@ def test_scatter_is_seldom_suspicious() -> None:
         result = SimpleNamespace(residuals=left @ random.standard_normal(12), slopes=slopes)
         told += suspicion(experiment, result, {"of a drift": np.arange(12.0)})[0] < CHANCE
     assert told <= stats.binom.ppf(0.99, 120, CHANCE)
+
+
+def test_what_to_fit_is_said_as_on_the_command_line(fmu_path: Path) -> None:
+    """Steady sliding, F_t_mean = F_C: of a range the bound that is nearest."""
+    data = {"V": [0.1, 0.2, 0.3], "F_t_mean": [50.0, 51.0, 50.5]}
+    for fit, value in (("F_C=40", 50.5), (["F_C=40..45"], 45.0), ({"F_C": (40.0, 45.0)}, 45.0)):
+        assert fc.identify(data, fit, fmu=fmu_path).values["F_C"] == pytest.approx(value, rel=1e-4)
+    for fit, message in ((["F_C=5..x"], "fit F_C=5..x: 'x' is not a number"), (["F_C", "F_C=3"], "twice")):
+        with pytest.raises(UserError, match=message):
+            fc.identify(data, fit, fmu=fmu_path)
