@@ -15,8 +15,7 @@ from scipy.integrate import BDF, OdeSolver
 from frictioncontact.fmu import Closing, FrictionError, FrictionFmu, Loaded, logging_callbacks, opened
 from frictioncontact.values import Value, real
 
-Inputs = Callable[[float, np.ndarray], Mapping[str, float]]
-Rates = Callable[..., Sequence[float]]
+Inputs, Rates = Callable[[float, np.ndarray], Mapping[str, float]], Callable[..., Sequence[float]]
 STATES = 4  # delta, W_f, Q_f, delta_y
 
 
@@ -28,13 +27,10 @@ class ModelExchange(Closing):
     """One contact in model exchange beside states of the host, which one integrator advances together.
 
     start      start values by name, SI units
-    own        start values of the host's own states
+    own        start values of the host's own states, whose sizes are nominals (1 if not given)
     inputs     (t, own) -> the FMU's inputs by name; what it does not name stays as it is
-    rates      (t, own, F_t) -> rates of the own states; after t and own the values of `outputs`
-    outputs    names of the FMU's outputs that the rates depend on
-    nominals   sizes of the own states; 1 of each if not given
-    tolerance  relative, of the integrator
-    method     the integrator, a class of scipy.integrate
+    rates      (t, own, F_t) -> rates of the own states; after t and own the values of outputs
+    tolerance  relative, of the integrator, which is method, a class of scipy.integrate
     fmu        another .fmu file of this model, or a `FrictionFmu`
     raises     UserError: a name or a value is wrong; FrictionError: the FMU or the integrator refuses
 
@@ -73,21 +69,25 @@ class ModelExchange(Closing):
         self._callbacks = logging_callbacks(self.messages)
         self._model: Any = self.Model(self.fmu.description, self.fmu.directory, self.fmu.library)
         self._model.instantiate(callbacks=self._callbacks)
+        self._call(self._initialize, {**start, **inputs(0.0, self.own)})
+
+    def _initialize(self, values: Mapping[str, Value]) -> None:
+        self._model.setupExperiment()
+        for name, value in values.items():
+            number, variable = self.fmu.known.number(name, value, "start"), self.fmu.variables[name]
+            is_real = variable.type == "Real"
+            put = self._model.setReal if is_real else self._model.setInteger
+            put([variable.valueReference], [number if is_real else int(number)])
+        self._model.enterInitializationMode()
+        self._model.exitInitializationMode()
+        self._update()
+
+    def _call(self, function: Callable[[Any], None], argument: Any) -> None:
+        """Of a call that the FMU refuses its own message."""
         try:
-            self._model.setupExperiment()
-            for name, value in {**start, **inputs(0.0, self.own)}.items():
-                number, variable = self.fmu.known.number(name, value, "start"), self.fmu.variables[name]
-                is_real = variable.type == "Real"
-                put = self._model.setReal if is_real else self._model.setInteger
-                put([variable.valueReference], [number if is_real else int(number)])
-            self._model.enterInitializationMode()
-            self._model.exitInitializationMode()
-            self._update()
-        except BaseException as error:
-            self.close()
-            if isinstance(error, FMICallException):
-                raise FrictionError("; ".join(self.messages) or str(error)) from None
-            raise
+            function(argument)
+        except FMICallException as error:
+            raise FrictionError("; ".join(self.messages) or str(error)) from None
 
     def _references(self, names: Iterable[str]) -> Array[c_uint]:
         found = [self.fmu.known.readable(name, "model exchange").valueReference for name in names]
@@ -100,8 +100,7 @@ class ModelExchange(Closing):
         self._model.enterContinuousTimeMode()
 
     def _set_inputs(self) -> None:
-        values = self._inputs(self.time, self.own)
-        if values:
+        if values := self._inputs(self.time, self.own):
             self._model.setReal(self._references(values), list(values.values()))
 
     def _put(self, t: float, y: np.ndarray) -> None:
@@ -123,11 +122,8 @@ class ModelExchange(Closing):
 
     def advance(self, stop: float) -> None:
         """To the time stop [s], by way of the events. An event is where an indicator has its new sign."""
-        try:
-            while self.time < stop:
-                self._to_an_event(min(stop, self._next_event))
-        except FMICallException as error:
-            raise FrictionError("; ".join(self.messages) or str(error)) from None
+        while self.time < stop:
+            self._call(self._to_an_event, min(stop, self._next_event))
 
     def _to_an_event(self, end: float) -> None:
         self._model.getContinuousStates(self._buffer, STATES)

@@ -339,8 +339,9 @@ def is_unit(text: str) -> bool:
 def _root(unit: str) -> Any:
     """Factor and unit in base units; None of what is no unit. rad/s is not Hz: radians stay."""
     powers = re.sub(r"(?<=[^\W\d])(-?\d)", r"**\1", unit)  # mm2, s-1
+    registry = _registry()
     with suppress(Exception):  # pint raises whatever its parser comes to
-        return _registry().get_root_units(_registry().parse_units(powers))
+        return registry.get_root_units(registry.parse_units(powers))
 
 
 @cache

@@ -31,9 +31,10 @@ otherwise. What is no column keeps the FMU's start value, or that of --set.
 
 A column time makes it a series instead, for example a loop of presliding and sliding, with F_t and either
 position or V; load, d and E may vary along it. What simulate writes with --outputs V F_t is such a file.
+Logs are read as they are: a warning tells what a heading is taken as, and what is left out.
 
-If the law does not fit, faults of the instrument, half the amplitude of the vibration and other laws are
-tried, and those with which it fits are named.
+If the law does not fit, faults of the instrument, other amplitudes of the vibration and other laws are tried,
+and those with which it fits are named; if it fits, those with which it fits as well.
 
 Without a file it fits the informative rows of the paper's Table 2: two parameters, three
 rows. That is an identification, not a validation.
