@@ -970,8 +970,8 @@ static bool catches(const World* w, const At* at, Vector delta, bool pushed) {
     return w->ramp ? w->pushed || dot(delta, at->input) > 0.0L : pushed;
 }
 
-// The motion at the begin of a part. If the push is 0, the later push decides: the bristle slips if V or its bound moves so
-// that it is pushed then, and sticks if not. On a ramp from V = 0 the later V decides.
+// The motion at the begin of a part. If the push is 0, the later push decides: the bristle slips if V, its bound or its own turn
+// is such that it is pushed then, and sticks if not. On a ramp from V = 0 the later V decides.
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
     march->slips = false;
@@ -994,8 +994,9 @@ static void begin(March* march, Real a, Real b) {
     }
     const Real push = outward(w, &at, march->state.delta);
     const Real rounding = ROUNDING * (w->top + fabsl(at.D_rate));
-    const bool pushed =
-        push > rounding || (push >= -rounding && outward(w, &later, march->state.delta) > 0.0L);
+    const Vector side = across(along(march->state.delta, 1.0L));
+    const Vector turns = march->state.delta + soon * dot(side, at.V) * side;
+    const bool pushed = push > rounding || (push >= -rounding && outward(w, &later, turns) > 0.0L);
     const bool no_V = w->ramp && dot(march->state.delta, at.input) == 0.0L;
     const Real slack = !w->ramp ? AS_DOUBLE : march->state.broke ? ON_BOUND : 0.0L;
     const bool lies = length >= (1.0L - slack) * at.D;
