@@ -3,7 +3,7 @@
 #ifndef FC_SOLVER_ARITHMETIC_H
 #define FC_SOLVER_ARITHMETIC_H
 
-#include <math.h> // also says whether the C library is glibc
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -20,14 +20,6 @@ static inline FcPair fc_pair(const double* first) { return *(const FcPair*)first
 static inline void fc_pair_put(double* first, FcPair pair) { *(FcPair*)first = pair; }
 
 static inline double fc_pair_sum(FcPair pair) { return pair[0] + pair[1]; }
-
-// A function marked so is compiled twice, the second time for processors with AVX: glibc takes the one that the
-// processor can run. Both compute the same numbers. Panels take 0.8 to 0.9 of the time. zig's clang can't link it.
-#if defined(__GLIBC__) && defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__clang__)
-#define FC_WITH_AVX __attribute__((target_clones("default", "avx")))
-#else
-#define FC_WITH_AVX
-#endif
 
 // The loops of a panel run over constants once these are inlined.
 #define FC_INLINE static inline __attribute__((always_inline))

@@ -126,7 +126,7 @@ static Close event_function(const March* march, Event event, const FcNodes* node
 static double place_of(const March* march, Event event, const FcNodes* nodes, const FcBodyPanel* panel) {
     double f[POINTS];
     const Close close = event_function(march, event, nodes, panel, f);
-    return fc_first_rise(f, close.rounding);
+    return FC_FASTEST(fc_first_rise)(f, close.rounding);
 }
 
 // The first event in the panel and its place. A panel that comes into a Stribeck curve is cut there before it is asked for
@@ -189,7 +189,7 @@ static void take_stuck(const March* march, FcNodes* nodes, FcBodyPanel* panel) {
 }
 
 static bool make(March* march, double u, double h, FcNodes* nodes, FcBodyPanel* panel) {
-    fc_nodes_make(march->plane, &march->part, u, h, nodes);
+    FC_FASTEST(fc_nodes_make)(march->plane, &march->part, u, h, nodes);
     if (march->is_known) {
         take_stuck(march, nodes, panel);
         march->solves += 1.0;

@@ -116,7 +116,7 @@ bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* pane
     from->delta = fc_crossing_delta(crossing);
     from->scale = from->for_any ? (1.0 - crossing->along.relaxation) * crossing->scale : 0.0;
     const FcPlane* plane = crossing->plane;
-    fc_nodes_make(plane, &crossing->part, crossing->at.u, h, nodes);
+    FC_FASTEST(fc_nodes_make)(plane, &crossing->part, crossing->at.u, h, nodes);
     crossing->evaluations += FC_STAGES * (plane->scene->drive.E.rate != 0.0 ? OF_A_MODULUS : 1.0) *
                              (fc_kind(crossing) == FC_SLIPS && !plane->on_line ? OF_NEWTON : 1.0);
     switch (fc_kind(crossing)) {
@@ -126,7 +126,7 @@ bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* pane
         fc_coulomb_panel(nodes, from->speed, panel);
         return true;
     default:
-        fc_free_panel(plane, nodes, from, panel);
+        FC_FASTEST(fc_free_panel)(plane, nodes, from, panel);
         return true;
     }
 }

@@ -137,7 +137,7 @@ static double top_at_bound(const FcCrossing* crossing, const FcNodes* nodes, con
         const FcVector n = {panel->delta[i].x / held.D, panel->delta[i].y / held.D};
         recedes[i] = -fc_plane_push(crossing->plane, &at, &held, n);
     }
-    const double top = fc_first_rise(recedes, ROUNDING_OF_PUSH * fc_largest_push(crossing));
+    const double top = FC_FASTEST(fc_first_rise)(recedes, ROUNDING_OF_PUSH * fc_largest_push(crossing));
     return top > BESIDE_TOP && top < 1.0 - BESIDE_TOP ? top : 2.0;
 }
 
@@ -191,7 +191,7 @@ static double end_of_push(const FcCrossing* crossing, const double push[POINTS])
         inwards[i] = -push[i];
         is_pushed = is_pushed || push[i] > rounding;
     }
-    return inwards[START] > rounding || !is_pushed ? 0.0 : fc_first_rise(inwards, rounding);
+    return inwards[START] > rounding || !is_pushed ? 0.0 : FC_FASTEST(fc_first_rise)(inwards, rounding);
 }
 
 // Whether the push of a slipping bristle that lies inside its bound, after an input has jumped, ends in the
@@ -231,7 +231,7 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
         }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
         *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));
-        const double meets = is_exact ? 2.0 : fc_first_rise(panel->to_bound, *over);
+        const double meets = is_exact ? 2.0 : FC_FASTEST(fc_first_rise)(panel->to_bound, *over);
         const double top = meets > 1.0 ? top_at_bound(crossing, nodes, panel) : 2.0;
         if (meets > 1.0 && top > 1.0) {
             break;

@@ -238,8 +238,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);
 }
 
-FC_WITH_AVX void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from,
-                               FcPanel* panel) {
+void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
     assert(nodes->duration >= 0.0 && (from->for_any || from->scale == 0.0));
     if (plane->on_line && !from->for_any) {
         take(plane, nodes, from, false, false, panel);

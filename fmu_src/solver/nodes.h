@@ -2,6 +2,7 @@
 #ifndef FC_SOLVER_NODES_H
 #define FC_SOLVER_NODES_H
 
+#include "solver/avx.h"
 #include "solver/course.h"
 #include "solver/panel_tables.h"
 
@@ -23,6 +24,7 @@ typedef struct {
 
 // The panel [u, u + h] of the part, h > 0. Rounding takes no point out of the part.
 void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes);
+FC_TWICE(fc_nodes_make);
 
 static inline FcPlaneCoefficients fc_nodes_at(const FcNodes* nodes, int i) {
     return (FcPlaneCoefficients){.V = {nodes->V[i], nodes->V_y[i]},

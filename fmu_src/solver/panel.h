@@ -32,6 +32,7 @@ typedef struct {
 
 // The motion between meetings; does not set to_bound.
 void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel);
+FC_TWICE(fc_free_panel);
 
 // Coulomb's law.
 void fc_coulomb_panel(const FcNodes* nodes, double speed, FcPanel* panel);

@@ -33,7 +33,7 @@ static double root_between(double* f, double a, double b, double at_b) {
 }
 
 // The values at the start and after each of the equal steps.
-FC_WITH_AVX static void find_samples(const double f[POINTS], double value[FC_SAMPLES + 1]) {
+static void find_samples(const double f[POINTS], double value[FC_SAMPLES + 1]) {
     double after[FC_SAMPLES] = {0.0};
     for (int j = 0; j < POINTS; j++) {
         for (int k = 0; k < FC_SAMPLES; k++) {

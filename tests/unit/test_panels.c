@@ -3,6 +3,7 @@
 
 #include "check.h"
 #include "solver/panel.h"
+#include "solver/rise.h"
 #include "solver/tuning.h"
 #include "table_1.h"
 
@@ -115,7 +116,31 @@ static void exponentials_have_their_digits(void) {
     CHECK(fc_exp_less(0.0, 0.0) == 1.0 && fc_exp_less(0.0, 1.0) == 0.0 && isnan(fc_exp_less(NAN, 0.0)));
 }
 
+// The same bits with AVX and without, for a bristle that relaxes in layers, behind a reversal and in a Stribeck curve.
+static void processors_compute_the_same_numbers(void) {
+    static FcNodes nodes[2];
+    static FcPanel panels[2];
+    static const FcFriction LUGRE = {
+        .model = FC_LUGRE, .limit = FC_LIMIT_CONSTANT, .staticRatio = 1.3, .V_S = 0.01};
+    Line line;
+    make(&line, 1e8, (FcLinearInput){0.0, 2e3});
+    line.scene.friction = &LUGRE;
+    fc_plane_make(&line.plane, &line.scene);
+    line.plane.on_line = true;
+    const FcPart part = {.end = 1e-5, .in = {0.0, 1e-6}, .side = 1, .narrow = 1.0};
+    const FcFrom from = {.delta = {1e-9, 0.0}, .speed = 0.02, .push = 0.02, .for_any = true, .scale = 1e-8};
+    fc_nodes_make(&line.plane, &part, 0.1, 1.3, &nodes[0]);
+    fc_free_panel(&line.plane, &nodes[0], &from, &panels[0]);
+    FC_FASTEST(fc_nodes_make)(&line.plane, &part, 0.1, 1.3, &nodes[1]);
+    FC_FASTEST(fc_free_panel)(&line.plane, &nodes[1], &from, &panels[1]);
+    CHECK(memcmp(&nodes[0], &nodes[1], sizeof nodes[0]) == 0);
+    CHECK(memcmp(&panels[0], &panels[1], sizeof panels[0]) == 0);
+    const double* f = nodes[0].moved;
+    CHECK(fc_first_rise(f, f[4]) == FC_FASTEST(fc_first_rise)(f, f[4]));
+}
+
 int main(void) {
+    processors_compute_the_same_numbers();
     exponentials_have_their_digits();
     panels_are_of_order_17();
     estimates_bound_the_errors();
