@@ -121,12 +121,14 @@ static const double BESIDE_TOP = 1e-6;
 // friction it decides a break-away, and in a settled state the slips are as small as the drift in a period.
 static double top_at_bound(const FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel) {
     bool is_near = false;
+    bool falls = false; // a top is not before a point that is higher than all before it
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
         const double D = fc_plane_radius(crossing->plane, &at, crossing->slips);
         is_near = is_near || panel->to_bound[i] > -0.5 * D * D;
+        falls = falls || (i < STAGES && panel->to_bound[i] < panel->to_bound[i > 0 ? i - 1 : START]);
     }
-    if (!is_near) {
+    if (!is_near || !falls) {
         return 2.0;
     }
     double recedes[POINTS];

@@ -65,9 +65,11 @@ double fc_first_rise(const double at_points[FC_POINTS], double over) {
         // Between three samples it may have a top, at that of a parabola.
         const double before = value[k > 1 ? k - 2 : 0];
         const double last = value[k - 1];
-        const double bend = 2.0 * last - before - value[k];
-        const bool has_top = last + 0.25 * bend > over && last <= over && last > before && last > value[k];
-        if (is_below && (has_top || value[k] > over)) {
+        const bool passes = value[k] > over;
+        bool has_top = last > before && last > value[k] && last <= over;
+        if (is_below && (passes || has_top)) {
+            const double bend = 2.0 * last - before - value[k];
+            has_top = has_top && last + 0.25 * bend > over;
             const double x = (k + (has_top ? 0.5 * (value[k] - before) / bend - 1.0 : 0.0)) / FC_SAMPLES;
             const double at_x = has_top ? value_at(f, x) : value[k];
             const int from = has_top && below > k - 2 ? (k > 1 ? k - 2 : 0) : below;
