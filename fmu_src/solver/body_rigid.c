@@ -239,7 +239,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
     double impulse = 0.0;
     double moved = 0.0;
     const FcDrive* drive = &scene->drive;
-    const double longest = drive->vibration.V_1 != 0.0 ? OF_PERIOD * FC_TWO_PI / drive->omega : h;
+    const double longest = drive->omega != 0.0 ? OF_PERIOD * FC_TWO_PI / drive->omega : h;
     double next = longest;
     while (of.t < h) {
         const double rest = h - of.t;
