@@ -23,6 +23,7 @@ STARTS = 3  # of each remedy
 SHOWS = 3.0  # standard deviations of the scatter by which it does
 MOST_RATIO = 3.0  # of static friction that is tried
 MUCH = 15.0  # of the sum of squares over the variance of a row: by scatter 1 of 1e4 fits is worse by that
+ALIKE = 4.0  # the same of a fit inside of the 95 % interval of one parameter
 
 OFFSET, GAIN = "an offset of the force", "a wrong gain of the force"
 AMPLITUDE, POSITION, HOLDER = f"a wrong {V_1}", "a wrong gain of the position", "a soft holder in series"
@@ -77,8 +78,9 @@ def rivals(experiment: Experiment, result: Fit) -> list[str]:
     for words, other in _others(experiment):
         with suppress(FrictionError):
             fit = search(other, other.target, most=STARTS, given=_near(experiment, result))
-            same = abs(fit.squares - result.squares) < 1e-6 * result.squares  # LuGre as Dahl
-            if not same and fit.squares - result.squares < MUCH * result.variance and not misfits(other, fit):
+            worse, same = (fit.squares - result.squares) / result.variance, 1e-6 * result.squares
+            is_new = abs(fit.squares - result.squares) > same  # LuGre may be Dahl
+            if is_new and (worse < ALIKE or (worse < MUCH and not misfits(other, fit))):
                 found.append(f"it fits as well with {_said(words, other, fit)}")
     return found
 
