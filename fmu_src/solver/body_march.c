@@ -195,8 +195,8 @@ static bool make(March* march, double u, double h, FcNodes* nodes, FcBodyPanel* 
         march->solves += 1.0;
         return true;
     }
-    return fc_body_panel(march->plane, march->body, &march->at, fc_allowed_force(march->interval), nodes,
-                         panel, &march->solves);
+    return FC_FASTEST(fc_body_panel)(march->plane, march->body, &march->at, fc_allowed_force(march->interval),
+                                     nodes, panel, &march->solves);
 }
 
 // The factor by which the errors of a panel are too large.

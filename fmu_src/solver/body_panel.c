@@ -274,8 +274,8 @@ void fc_body_panel_rates(const FcPlane* plane, const FcBody* body, const FcBodyS
     }
 }
 
-FC_WITH_AVX bool fc_body_panel(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
-                               double close, FcNodes* nodes, FcBodyPanel* panel, double* solves) {
+bool fc_body_panel(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, double close,
+                   FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     assert(body->m > 0.0 && close > 0.0 && plane->on_line);
     panel->delta[START] = start->delta;
     panel->v[START] = start->v;

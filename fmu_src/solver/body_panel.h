@@ -8,6 +8,7 @@
 #ifndef FC_SOLVER_BODY_PANEL_H
 #define FC_SOLVER_BODY_PANEL_H
 
+#include "solver/avx.h"
 #include "solver/body.h"
 #include "solver/control.h"
 #include "solver/nodes.h"
@@ -44,6 +45,8 @@ typedef struct {
 // system to *solves. False if Newton's method does not converge: the panel is too long.
 bool fc_body_panel(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, double close,
                    FcNodes* nodes, FcBodyPanel* panel, double* solves);
+
+FC_TWICE(fc_body_panel);
 
 // Sets w and the rates at the points, and nodes->limit, from delta and v there.
 void fc_body_panel_rates(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, FcNodes* nodes,
