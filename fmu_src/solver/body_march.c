@@ -34,8 +34,10 @@ static const double SHARE_OF_PERIODS = 0.1;
 static const double ROUNDING = 3e-14;
 // Of a velocity, over the largest: 5 eps.
 static const double EPSILON = 1e-15;
+// Of two panels of which the longer shows an event and the shorter does not, this part of the longer is looked at next.
+static const double BETWEEN = 0.1;
 // Cuts at one event, refusals of one panel, and panels in a row that do not get on, at an event that rounding hides.
-enum { MOST_CUTS = 12, MOST_TRIES = 25, MOST_STALLED = 50 };
+enum { MOST_CUTS = 24, MOST_TRIES = 25, MOST_STALLED = 50 };
 
 typedef struct {
     const FcPlane* plane;
@@ -296,6 +298,7 @@ static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcB
 static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel,
                          Event* event) {
     double place;
+    double seen = *h; // the length of the last panel that shows the event
     *event = first_event(march, nodes, panel, &place);
     for (int cuts = 0; *event != NO_EVENT && cuts < MOST_CUTS; cuts++) {
         *h *= place;
@@ -311,10 +314,16 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         }
         if (now != NO_EVENT) {
             *event = now;
+            seen = *h;
             continue;
         }
         const double slope = slope_at_end(f);
         const double step = slope > 0.0 ? -f[LAST] / slope : 0.0;
+        if (!(step > 0.0 && step < 0.5) && *h < BETWEEN * seen) {
+            place =
+                BETWEEN * seen / *h; // a push that leaves 0 with its square: the long panel is rough there
+            continue;
+        }
         if (!(step > 0.0 && step < 0.5)) {
             *event = NO_EVENT; // a touch that is none as it is seen now
             return true;

@@ -146,21 +146,6 @@ def test_one_long_step_is_ten_short_ones(fmu: FrictionFmu, law: str) -> None:
         assert short[name][-1] == pytest.approx(long[name][-1], abs=1e-7 * allowed)
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_a_state_saved_in_mid_ring_goes_on_alike(fmu: FrictionFmu, law: str) -> None:
-    outputs = ("F_t", "F_t_mean", "body.v", "body.x", "W_f", "Q_f", "delta")
-    start = {**BODY, "friction.model": law, "body.F": 25.0, "body.v_0": 1e-3}
-    with fmu.session(start) as session, fmu.session(start) as other:
-        session.step(1.3 / OMEGA)
-        saved = session.save()
-        session.step(1e-3)
-        first = session.read(outputs)
-        for restored in (session, other):
-            restored.restore(saved)
-            restored.step(1e-3)
-            assert (restored.read(outputs) == first).all()
-
-
 @pytest.mark.parametrize(("row", "end"), [(0, 0.1), (2, 0.1), (3, 4e-3), (5, 4e-3)])
 def test_the_master_of_the_page_errs_by_the_forces_that_it_holds(
     fmu: FrictionFmu, row: int, end: float
