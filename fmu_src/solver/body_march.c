@@ -253,12 +253,21 @@ static double planned(const March* march) {
     if (march->h > 0.0) {
         h = fc_least(h, march->h);
     }
-    if (kind == FC_SLIPS || (kind == FC_RELAXES && march->h > 0.0)) {
+    const FcFriction* friction = friction_of(march);
+    const bool in_curve = kind == FC_SLIPS && fc_has_stribeck_curve(friction);
+    if ((kind == FC_SLIPS && !in_curve) || (kind == FC_RELAXES && march->h > 0.0)) {
         return h;
     }
     FcPhase phase;
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double w = march->at.v + at.V.x;
+    if (in_curve) { // one that breaks away inside may leave the curve before the first point
+        const double rate =
+            fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit)
+                .w;
+        const bool leaves = fabs(w) < FC_END_OF_CURVE * friction->V_S;
+        return leaves ? fc_least(h, fc_most(friction->V_S, 0.5 * fabs(w)) / (fabs(rate) + DBL_MIN)) : h;
+    }
     if (kind == FC_RELAXES) {
         return fc_least(h, fc_least(1.5 / ringing, 3.0 / (at.sigma * fabs(w) / at.limit + DBL_MIN)));
     }
