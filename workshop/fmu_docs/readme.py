@@ -28,6 +28,22 @@ V_1 = TABLE_2[1].V_1
 STILL = {"vibration.V_1": 0.0, "vibration.a_d": 0.0}
 
 
+def front(fmu: FrictionFmu, path: Path) -> None:
+    """The README's mass of 1 kg under 30 N, without and with the vibration: steps of 1 ms over those of 10 us."""
+    figure, axes = style.subplots(size=(7.2, 3.0))
+    pulled = {"V": 0.0, "contact.stiffnessScale": 4.417e-7, "body.m": 1.0, "body.F": 30.0}
+    looks = (V_1, style.ORANGE, "with a vibration of 1.44 m/s at 20 kHz"), (0.0, style.BLUE, "without")
+    for amplitude, colour, label in looks:
+        scene = pulled | {"vibration.V_1": amplitude}
+        for step, look in ((1e-5, {"lw": 1.0}), (1e-3, {"marker": "o", "ls": "", "ms": 5, "label": label})):
+            run = simulate(fmu, scene, step, round(0.02 / step), outputs=("body.v",))
+            axes.plot(1e3 * run["time"], 1e3 * run["body.v"], color=colour, **look)
+    axes.set(xlabel="time [ms]", ylabel="velocity of the mass [mm/s]", xlim=(0.0, 20.3))
+    axes.set_title("30 N pull a mass of 1 kg over a contact with a limit of 55 N")
+    axes.legend(loc="upper left", title="dots: steps of 1 ms, lines: of 10 µs", alignment="left")
+    style.save(figure, path)
+
+
 def overview(fmu: FrictionFmu, path: Path) -> None:
     """What the vibration does within microseconds, and what a tool that steps at a millisecond sees of it."""
     figure, (inside, coupled) = style.subplots(2, 1, size=(4.8, 5.6))
@@ -155,6 +171,7 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     """All pictures; gives their paths."""
     drawings: dict[str, Callable[[Path], None]] = {
         "table2": partial(table2.draw, fmu, list(table2.results(fmu))),
+        "front": partial(front, fmu),
         "overview": partial(overview, fmu),
         "fmpy_example": partial(fmpy_example, fmu),
         "output-choice": diagrams.draw_choice,
