@@ -318,7 +318,9 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         const double close = event_function(march, *event, nodes, panel, f).allowed;
         const bool is_there = fabs(f[LAST]) <= close;
         const Event now = first_event(march, nodes, panel, &place);
-        if (is_there && (now == NO_EVENT || now == *event)) {
+        // A short panel that begins as close to the event as it ends does not show that it comes.
+        const bool begins_there = fabs(f[START]) <= close && *h < BETWEEN * seen;
+        if (is_there && (now == *event || (now == NO_EVENT && !begins_there))) {
             return true;
         }
         if (now != NO_EVENT) {
@@ -328,7 +330,7 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         }
         const double slope = slope_at_end(f);
         const double step = slope > 0.0 ? -f[LAST] / slope : 0.0;
-        if (!(step > 0.0 && step < 0.5) && *h < BETWEEN * seen) {
+        if ((begins_there || !(step > 0.0 && step < 0.5)) && *h < BETWEEN * seen) {
             place =
                 BETWEEN * seen / *h; // a push that leaves 0 with its square: the long panel is rough there
             continue;
