@@ -17,8 +17,6 @@ static const double ORDER = 17.0;
 static const double MOST_BEHIND = 30.0;
 // Rounding of a panel's force, over the limit: 900 eps. A smaller error would only shorten panels.
 static const double ROUNDING_OF_PANEL = 2e-13;
-// Derived: the effect of a curve of a thousandth of the tolerance is none.
-static const double SEEN = 1e-3;
 
 // ln(x) to 0.03 and e^x to 3 %, by the bits of x: enough for a plan, and five times as fast.
 static inline double rough_log(double x) {
@@ -168,19 +166,8 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     return h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
 }
 
-// Whether the panel sees the Stribeck curve.
-static bool sees_curve(const FcControl* control, const FcNodes* nodes) {
-    const FcFriction* friction = control->interval->scene->friction;
-    if (!fc_has_stribeck_curve(friction)) {
-        return false;
-    }
-    const double V =
-        fc_least(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
-    return (friction->staticRatio - 1.0) * exp(-V * V) > SEEN * control->interval->tolerance;
-}
-
 double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
-                         const FcPanel* panel, FcKind kind, double* of_end) {
+                         const FcPanel* panel, double* of_end) {
     const FcInterval* interval = control->interval;
     const double end = nodes->t[FC_STAGES - 1];
     const double allowed = fc_allowed_force(interval);
@@ -192,15 +179,9 @@ double fc_control_excess(const FcControl* control, const FcPart* part, const FcN
     const double lasts = fc_least(1.0, nodes->duration / interval->duration); // the nodes' times are rounded
     const double end_error = panel->end_error * fc_most(1.0, interval->stiffness / panel->sigma);
     const double mean_error = end_error * lives + panel->mean_error * lasts;
-    // In a curve of LuGre's law, a panel may use the share of its relaxation alone.
-    const bool in_curve = sees_curve(control, nodes);
-    const double path = interval->speed * interval->duration / interval->saturation;
-    const bool by_z = in_curve && interval->scene->friction->model == FC_LUGRE;
-    const double whole = allowed * (by_z ? fc_least(1.0, fc_most(panel->z, path)) : 1.0);
-    const double curve = in_curve || kind == FC_NO_BRISTLE ? FC_SHARE_IN_CURVE : 1.0;
     const double rounding = ROUNDING_OF_PANEL * panel->limit;
-    *of_end = FC_SAFETY * end_error / fc_most(curve * FC_SHARE_OF_END * whole, rounding);
-    return FC_SAFETY * mean_error / fc_most(curve * FC_SHARE_OF_MEAN * whole, rounding);
+    *of_end = FC_SAFETY * end_error / fc_most(FC_SHARE_OF_END * allowed, rounding);
+    return FC_SAFETY * mean_error / fc_most(FC_SHARE_OF_MEAN * allowed, rounding);
 }
 
 double fc_control_shortens(double excess) {

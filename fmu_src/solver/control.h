@@ -39,7 +39,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
 // The factor by which the panel's errors of the mean are too large, and in *of_end that at the end, before it fades along the
 // path to the interval's end.
 double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
-                         const FcPanel* panel, FcKind kind, double* of_end);
+                         const FcPanel* panel, double* of_end);
 
 // The factor by which a panel is shortened that was refused, and that by which the one after it may be longer if there
 // were refusals, for an excess.

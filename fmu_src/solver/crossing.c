@@ -48,8 +48,7 @@ static FcFrom first_from(const FcCrossing* crossing) {
     const bool limit_stands = fc_scene_limit_is_constant(scene);
     const bool is_still = limit_stands && fc_scene_stiffness_is_constant(scene);
     const bool has_curve = fc_has_stribeck_curve(scene->friction);
-    return (FcFrom){.speed = crossing->interval->speed + DBL_MIN,
-                    .push = fc_largest_push(crossing) + DBL_MIN,
+    return (FcFrom){.push = fc_largest_push(crossing) + DBL_MIN,
                     .is_still = is_still && !has_curve && scene->friction->sigma_1 == 0.0,
                     .limit_stands = limit_stands && (!has_curve || fc_drive_V_is_constant(&scene->drive))};
 }
@@ -111,8 +110,37 @@ void fc_choose_variable(FcCrossing* crossing) {
 
 bool fc_part_is_crossed(const FcCrossing* crossing) { return !(crossing->at.u < crossing->end); }
 
+// A distance [m] from start to end in a part that is at most the path: straight to the center, and from there.
+static double least_path(const FcCrossing* crossing, const FcPart* part, double start, double end) {
+    const FcDrive* drive = &crossing->interval->scene->drive;
+    if (crossing->plane->on_line) {
+        return fabs(fc_drive_displacement(drive, start, end));
+    }
+    const double turn = fc_least(fc_most(part->in.center, start), end);
+    return hypot(fc_drive_displacement(drive, start, turn),
+                 fc_drive_displacement(&crossing->across, start, turn)) +
+           hypot(fc_drive_displacement(drive, turn, end),
+                 fc_drive_displacement(&crossing->across, turn, end));
+}
+
+// Finds the ways of the parts once, and the speed that goes with the whole way. In the plane a way may return.
+static void find_ways(FcCrossing* crossing) {
+    if (crossing->from.speed != 0.0) {
+        return;
+    }
+    double after = 0.0;
+    for (int i = crossing->count - 1; i >= 0; i--) {
+        const FcPart* part = &crossing->parts[i];
+        crossing->way[i] = after;
+        after += least_path(crossing, part, part->start, part->end);
+    }
+    const FcInterval* interval = crossing->interval;
+    crossing->from.speed = (crossing->plane->on_line ? after / interval->duration : interval->speed) + DBL_MIN;
+}
+
 bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel) {
     FcFrom* from = &crossing->from;
+    find_ways(crossing);
     from->delta = fc_crossing_delta(crossing);
     from->scale = from->for_any ? (1.0 - crossing->along.relaxation) * crossing->scale : 0.0;
     const FcPlane* plane = crossing->plane;
@@ -137,38 +165,16 @@ void fc_make_again(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* pane
     }
 }
 
-// A distance [m] from start to end in a part that is at most the path: straight to the center, and from there.
-static double least_path(const FcCrossing* crossing, const FcPart* part, double start, double end) {
-    const FcDrive* drive = &crossing->interval->scene->drive;
-    if (crossing->plane->on_line) {
-        return fabs(fc_drive_displacement(drive, start, end));
-    }
-    const double turn = fc_least(fc_most(part->in.center, start), end);
-    return hypot(fc_drive_displacement(drive, start, turn),
-                 fc_drive_displacement(&crossing->across, start, turn)) +
-           hypot(fc_drive_displacement(drive, turn, end),
-                 fc_drive_displacement(&crossing->across, turn, end));
-}
-
-// The ways of the parts are found once.
 double fc_path_left(FcCrossing* crossing, double t) {
-    if (!crossing->has_ways) {
-        double after = 0.0;
-        for (int i = crossing->count - 1; i >= 0; i--) {
-            const FcPart* part = &crossing->parts[i];
-            crossing->way[i] = after;
-            after += least_path(crossing, part, part->start, part->end);
-        }
-        crossing->has_ways = true;
-    }
+    find_ways(crossing);
     return crossing->way[crossing->number] + least_path(crossing, &crossing->part, t, crossing->part.end);
 }
 
 // The factor by which the errors of a panel that was solved are too large.
-static double excess_of(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel, FcKind kind) {
+static double excess_of(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel) {
     double of_end;
     const double of_mean =
-        fc_control_excess(&crossing->control, &crossing->part, nodes, panel, kind, &of_end);
+        fc_control_excess(&crossing->control, &crossing->part, nodes, panel, &of_end);
     if (of_end > 1.0 && of_end > of_mean) { // the path is found only if it decides
         of_end *= exp(-fc_path_left(crossing, nodes->t[LAST]) / crossing->interval->saturation);
     }
@@ -181,7 +187,7 @@ double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
                                  crossing->h);
     for (int tries = 0;; tries++) {
         const bool is_solved = fc_make_panel(crossing, h, nodes, panel);
-        const double excess = is_solved ? excess_of(crossing, nodes, panel, kind) : HUGE_VAL;
+        const double excess = is_solved ? excess_of(crossing, nodes, panel) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= FC_MOST_TRIES) {
             if (!is_solved) {
                 crossing->along.offset = NAN;

@@ -17,8 +17,7 @@ typedef struct {
     FcReached at;
     double end, whole; // of the part, in u
     double h;          // of the next panel, in u; 0 if nothing proposes one
-    double* way;       // m, the path after each part, at the least
-    bool has_ways;
+    double* way;       // m, the path after each part, at the least; found if it is needed
     // The bristle, and the sums.
     FcMap along, across_map;
     FcFrom from;      // of the next panel, and whether the maps are for any start

@@ -329,5 +329,7 @@ void fc_slip_until_event(FcCrossing* crossing) {
     }
     if (is_over) {
         fc_end_slip(crossing);
+    } else if (is_cut) {
+        crossing->h = 4.0 * h; // the panel was too long for its points
     }
 }

@@ -1,6 +1,7 @@
 #include "solver/leap.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "model/extremes.h"
 #include "solver/leap_block.h"
@@ -26,17 +27,18 @@ static void take_part(const FcScene* scene, const FcSolverOptions* options, doub
     fc_take_pieces(&part, options, to - from, total);
 }
 
-// The number of periods from k to the next kink, at |V| = V_1, beyond which V begins or ends to reverse, or to the next
-// end of a Stribeck peak beside it: few points far from a peak do not see it.
+// The number of periods from k to the next kink: at |V| = V_1, beyond which V begins or ends to reverse; at the next end
+// of a Stribeck peak beside it, which few points far from it do not see; and where the surfaces reverse between two periods,
+// so that the period before has one reversal more than the one after, or less.
 static double to_kink(const FcScene* scene, double k) {
     const FcDrive* drive = &scene->drive;
     const double V_1 = drive->vibration.V_1;
     const double peak = fc_has_stribeck_curve(scene->friction) ? FC_END_OF_PEAK * scene->friction->V_S : 0.0;
-    const double kinks[] = {V_1, V_1 - peak, V_1 + peak};
+    const double between = -V_1 * fc_drive_phase(drive, 0.0).cosine;
+    const double kinks[] = {V_1, V_1 - peak, V_1 + peak, -V_1, peak - V_1, -V_1 - peak, between};
     double nearest = HUGE_VAL;
-    for (int i = 0; i < 6 && drive->V.rate != 0.0; i++) {
-        const double V = i < 3 ? kinks[i] : -kinks[i - 3];
-        const double at = (V - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
+    for (size_t i = 0; i < sizeof kinks / sizeof *kinks && drive->V.rate != 0.0; i++) {
+        const double at = (kinks[i] - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
         if (at > k) {
             nearest = fc_least(nearest, floor(at - k));
         }

@@ -15,11 +15,9 @@
 static const double FC_SAFETY = 4.0;
 
 // The estimate that is accepted, over the allowed error: for the mean, in which the errors of panels differ in sign; at
-// the end; and the factor on both where force and limit follow a Stribeck curve, whose estimates are smaller. 1.01, 1.00; 1.01, 0.99;
-// 1.01, 1.00.
+// the end. 1.01, 1.00; 1.01, 0.99.
 static const double FC_SHARE_OF_MEAN = 10.0;
 static const double FC_SHARE_OF_END = 0.2;
-static const double FC_SHARE_IN_CURVE = 0.1;
 
 // The part of a defect that acts on the mean over a panel, since the defect changes sign between the points: 1.00, 1.00.
 static const double FC_MEAN_OF_DEFECT = 0.1;

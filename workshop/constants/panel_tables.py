@@ -16,6 +16,7 @@ from workshop.project import ROOT
 
 mp.dps = 60
 STAGES, SAMPLES = 9, 32
+TAIL = (8, 7, 6, 5, 2, 1)  # degrees by which the error of a panel is estimated
 HEADER = ROOT / "fmu_src" / "solver" / "panel_tables.h"
 
 
@@ -43,7 +44,7 @@ class Rule:
         self.weights = list(mp.matrix([[mpf(1) / (j + 1) for j in range(n)]]) * from_values)
         self.start = [from_values[0, j] for j in range(n)]  # the polynomial's value at 0
         of_degree = legendres**-1
-        self.tail = [[of_degree[max(n - k, 0), j] for k in range(1, 5)] for j in range(n)]
+        self.tail = [[of_degree[k, j] for k in TAIL] for j in range(n)]
 
 
 def barycentric_weights(points: list[mpf]) -> list[mpf]:
@@ -89,7 +90,7 @@ typedef struct {{
     double start[10];      // value at the start of the polynomial through the stages, less the value there
     double inverse[9][10]; // of the Runge-Kutta matrix
     double matrix[9][10];  // [i][j]: weight of node j in the integral up to node i
-    double tail[10][4];    // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
+    double tail[10][6];    // [j][k]: weight of node j in the Legendre coefficient of degree 8, 7, 6, 5, 2 and 1
     double barycentric[10];
     double sample[10][{SAMPLES}];  // [j][k]: weight of point j in the value of the polynomial after the part (k + 1) / {SAMPLES}
 }} FC_PAIRED FcRadauRule;
@@ -101,7 +102,7 @@ static const FcRadauRule FC_RADAU = {{
     {row([*rule.start, -mpf(1)])},
     {rows([[inverse[i, j] for j in range(STAGES)] for i in range(STAGES)])},
     {rows([[*rule.integral[i, :], mpf(0)] for i in range(STAGES)])},
-    {rows([*rule.tail, [mpf(0)] * 4])},
+    {rows([*rule.tail, [mpf(0)] * len(TAIL)])},
     {row(barycentric_weights(points))},
     {rows([list(of_point) for of_point in samples])},
 }};
