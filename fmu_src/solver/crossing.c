@@ -135,7 +135,8 @@ static void find_ways(FcCrossing* crossing) {
         after += least_path(crossing, part, part->start, part->end);
     }
     const FcInterval* interval = crossing->interval;
-    crossing->from.speed = (crossing->plane->on_line ? after / interval->duration : interval->speed) + DBL_MIN;
+    crossing->from.speed =
+        (crossing->plane->on_line ? after / interval->duration : interval->speed) + DBL_MIN;
 }
 
 bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel) {
@@ -173,8 +174,7 @@ double fc_path_left(FcCrossing* crossing, double t) {
 // The factor by which the errors of a panel that was solved are too large.
 static double excess_of(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel) {
     double of_end;
-    const double of_mean =
-        fc_control_excess(&crossing->control, &crossing->part, nodes, panel, &of_end);
+    const double of_mean = fc_control_excess(&crossing->control, &crossing->part, nodes, panel, &of_end);
     if (of_end > 1.0 && of_end > of_mean) { // the path is found only if it decides
         of_end *= exp(-fc_path_left(crossing, nodes->t[LAST]) / crossing->interval->saturation);
     }

@@ -13,7 +13,7 @@
 typedef struct {
     FcVector delta;    // m, the start of the one
     double scale;      // m, of the starts of all others, 0 for none
-    double speed;      // m/s, of the surfaces: along a line the mean, by which work and heat are judged, else the largest,
+    double speed;      // m/s, of the surfaces, for work and heat: the mean on a line, else the largest,
     double push;       // m/s, and of the bristle and its bound together
     bool for_any;      // the maps are for any start, else for this one alone
     bool is_still;     // sigma and g of Dahl's law are constant: delta has a closed form

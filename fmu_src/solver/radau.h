@@ -29,7 +29,8 @@ FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
     }
     const double top = fc_larger(high);
     const double before = fc_larger(middle);
-    const double square = fc_most(fc_most(0.5 * fabs(at_start) / top, top / before), sqrt(before / fc_larger(low)));
+    const double square =
+        fc_most(fc_most(0.5 * fabs(at_start) / top, top / before), sqrt(before / fc_larger(low)));
     return (FcTail){top, fc_least(1.0, sqrt(square))};
 }
 
