@@ -392,7 +392,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if ((nUnknown > 0 && (!vUnknown_ref || !dvUnknown)) || (nKnown > 0 && (!vKnown_ref || !dvKnown))) {
         return fc_refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
     }
-    FcVariables direction = {.V = 0.0};
+    FcVariables direction;
+    memset(&direction, 0, sizeof direction);
     if (!read_direction(instance, vKnown_ref, nKnown, dvKnown, &direction)) {
         return fmi2Error;
     }

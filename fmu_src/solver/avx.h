@@ -10,7 +10,7 @@ extern bool
     fc_has_avx; // this processor, where they are there twice; set while the library is loaded, and never again
 
 #ifdef FC_WITH_AVX
-#define FC_FASTEST(name) (fc_has_avx ? name##_avx : name)
+#define FC_FASTEST(name) (fc_has_avx ? name##_avx : (name))
 #define FC_TWICE(name) extern __typeof__(name) name##_avx
 #else
 #define FC_FASTEST(name) name

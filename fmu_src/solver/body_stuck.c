@@ -36,29 +36,30 @@ bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyS
     return true;
 }
 
-double fc_body_stuck_delta(const FcBodyStuck* of, double x, double* rate, double* integral) {
+double fc_body_stuck_delta(const FcBodyStuck* stuck, double x, double* rate, double* integral) {
     // Differences to the start, which keep the digits of a short time.
-    const double half_sine = sin(0.5 * of->ringing * x);
+    const double half_sine = sin(0.5 * stuck->ringing * x);
     const double less_1 = -2.0 * half_sine * half_sine; // cos(w x) - 1
-    const double sine = sin(of->ringing * x);
-    const double s = sin(of->omega * x);
-    const double c = cos(of->omega * x);
-    const double swing = of->phase.sine * c + of->phase.cosine * s;
-    const double swing_rate = of->phase.cosine * c - of->phase.sine * s;
-    *rate = of->B + of->omega * of->Z * swing_rate + of->ringing * (of->S * (1.0 + less_1) - of->C * sine);
-    *integral = (of->A + 0.5 * of->B * x) * x + (of->C * sine - of->S * less_1) / of->ringing;
-    if (of->Z != 0.0) {
-        *integral += of->Z * (of->phase.cosine - swing_rate) / of->omega;
+    const double sine = sin(stuck->ringing * x);
+    const double s = sin(stuck->omega * x);
+    const double c = cos(stuck->omega * x);
+    const double swing = stuck->phase.sine * c + stuck->phase.cosine * s;
+    const double swing_rate = stuck->phase.cosine * c - stuck->phase.sine * s;
+    *rate = stuck->B + stuck->omega * stuck->Z * swing_rate +
+            stuck->ringing * (stuck->S * (1.0 + less_1) - stuck->C * sine);
+    *integral = (stuck->A + 0.5 * stuck->B * x) * x + (stuck->C * sine - stuck->S * less_1) / stuck->ringing;
+    if (stuck->Z != 0.0) {
+        *integral += stuck->Z * (stuck->phase.cosine - swing_rate) / stuck->omega;
     }
-    return of->A + of->B * x + of->Z * swing + of->C * (1.0 + less_1) + of->S * sine;
+    return stuck->A + stuck->B * x + stuck->Z * swing + stuck->C * (1.0 + less_1) + stuck->S * sine;
 }
 
-double fc_body_stuck_free_time(const FcBodyStuck* of, double D, double end) {
+double fc_body_stuck_free_time(const FcBodyStuck* stuck, double D, double end) {
     const double most =
-        D * (1.0 + 0.5 * FC_ROUNDING_OF_BOUND) - fabs(of->Z) - hypot(of->C, of->S); // of |A + B t|
-    if (!(most > fabs(of->A))) {
+        D * (1.0 + 0.5 * FC_ROUNDING_OF_BOUND) - fabs(stuck->Z) - hypot(stuck->C, stuck->S); // of |A + B t|
+    if (!(most > fabs(stuck->A))) {
         return 0.0;
     }
-    const double way = most - (of->B < 0.0 ? -of->A : of->A);
-    return fabs(of->B) * end > way ? way / fabs(of->B) : end;
+    const double way = most - (stuck->B < 0.0 ? -stuck->A : stuck->A);
+    return fabs(stuck->B) * end > way ? way / fabs(stuck->B) : end;
 }

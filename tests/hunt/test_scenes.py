@@ -33,7 +33,7 @@ def assert_work(done: subprocess.CompletedProcess[str], kind: str) -> None:
 
 @pytest.mark.parametrize(("count", "kind"), [("200", "line"), ("24", "plane"), ("40", "mass")])
 def test_the_first_sequences_of_the_hunts_on_the_page(count: str, kind: str) -> None:
-    """Of docs/reliability.md: every law, contact, limit, jumps; leaps in the plane; a line is its limit; a mass."""
+    """Of docs/reliability.md: every law, contact, limit, jumps; leaps in the plane; its limit; a mass."""
     done = hunt("--seed", "204", "--scenes", count, *([] if kind == "line" else [f"--{kind}"]))
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"\n{count} sequences of " in done.stdout and " 0 refused" in done.stdout
@@ -59,7 +59,7 @@ def test_a_climb_finds_no_miss(trials: int, options: tuple[str, ...]) -> None:
 
 
 def test_masses_that_were_found() -> None:
-    """Rests at the end of a step, turns under a fast V, break-away with a damper, a path far below that of V."""
+    """Rests at a step's end, turns under a fast V, break-away with a damper, a path far below that of V."""
     done = hunt("--file", str(SCENES.with_name("masses.txt")))
     assert done.returncode == 0, done.stdout + done.stderr
     assert " 0 refused, 0 beyond the reference, 0 misses" in done.stdout
