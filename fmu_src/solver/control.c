@@ -180,8 +180,17 @@ double fc_control_excess(const FcControl* control, const FcPart* part, const FcN
     const double end_error = panel->end_error * fc_most(1.0, interval->stiffness / panel->sigma);
     const double mean_error = end_error * lives + panel->mean_error * lasts;
     const double rounding = ROUNDING_OF_PANEL * panel->limit;
-    *of_end = FC_SAFETY * end_error / fc_most(FC_SHARE_OF_END * allowed, rounding);
-    return FC_SAFETY * mean_error / fc_most(FC_SHARE_OF_MEAN * allowed, rounding);
+    // Heat is the force times the way and the change of the deflection: in a curve, whose coefficients fall late, a short panel
+    // of a relaxing bristle may err by a part of its change alone.
+    const FcFriction* friction = interval->scene->friction;
+    const double V =
+        fc_least(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
+    const bool in_curve =
+        friction->model == FC_LUGRE && (friction->staticRatio - 1.0) * exp(-V * V) > interval->tolerance;
+    const double path = interval->speed * interval->duration / interval->saturation;
+    const double whole = allowed * (in_curve ? fc_least(1.0, fc_most(panel->z, path)) : 1.0);
+    *of_end = FC_SAFETY * end_error / fc_most(FC_SHARE_OF_END * whole, rounding);
+    return FC_SAFETY * mean_error / fc_most(FC_SHARE_OF_MEAN * whole, rounding);
 }
 
 double fc_control_shortens(double excess) {
