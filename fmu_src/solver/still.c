@@ -1,5 +1,7 @@
 #include "solver/still.h"
 
+#include <float.h>
+
 #include "model/extremes.h"
 #include "model/root.h"
 #include "solver/arithmetic.h"
@@ -80,7 +82,8 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
         return true;
     }
     WayToBound of = {drive, t, *way, side};
-    *end = fc_root_between(past_bound, &of, t, -*way, *end, moves - *way, 1e-10 * D, &crossing->evaluations);
+    *end = fc_root_between(past_bound, &of, t, -*way, *end, moves - *way, DBL_EPSILON * D,
+                           &crossing->evaluations);
     return true;
 }
 

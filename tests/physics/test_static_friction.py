@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
 
 from frictioncontact.fmu import FrictionFmu, Value
 
@@ -61,3 +64,43 @@ def test_held_samples_come_to_the_ramp_that_they_sample(
             session.step(duration / 100 if k < 100 else 1e-6)
             largest = max(largest, session.get("F_t"))
         assert largest == pytest.approx(peak, abs=0.11)
+
+
+def test_work_and_heat_of_a_meeting(fmu: FrictionFmu) -> None:
+    """Against the integral of F dx: a spring up to its bound, then the limit along V; V grows from 0.
+
+    What a slip along Stribeck's curve keeps is the spring's energy at its end.
+    """
+
+    @settings(max_examples=200, deadline=None, database=None)
+    @given(st.floats(-15.0, -0.3), st.floats(5.0, 8.0), st.floats(1.05, 2.0), st.floats(-1.0, 1.0))
+    def check(room: float, stiffness: float, ratio: float, far: float) -> None:
+        sigma, limit, rate, peak = 10.0**stiffness, 10.0, -3.0, 1.0
+        D = ratio * limit / sigma
+        delta_0 = -(1.0 - 10.0**room) * D
+        h = math.sqrt(2.0 * D * (10.0**room + 10.0**far) / -rate)
+        start: dict[str, Value] = {"F_C": limit, "contact.sigma": sigma, "friction.V_S": peak, "V": 0.0}
+        start |= {"friction.staticRatio": ratio, "delta_0": delta_0}
+        with fmu.session({**SPRING, **start}) as session:
+            session.set_rates(V=rate)
+            session.step(h)
+            found = session.read(("W_f", "Q_f"))
+        with mp.workdps(40):
+            bound = mpf(ratio) * mpf(limit) / mpf(sigma)
+            met = -2 * (bound + mpf(delta_0)) * mpf(rate)  # V squared
+            end = (mpf(rate) * mpf(h)) ** 2  # as met
+            curve = (mpf(ratio) - 1) * mpf(peak) ** 2
+            kinetic = limit * (1 + (mpf(ratio) - 1) * mp.exp(-end / mpf(peak) ** 2))
+            stuck = mpf(sigma) * (bound**2 - mpf(delta_0) ** 2) / 2
+            slid = (
+                -limit
+                / mpf(rate)
+                / 2
+                * (end - met + curve * (mp.exp(-met / peak**2) - mp.exp(-end / peak**2)))
+            )
+            kept = kinetic**2 / mpf(sigma) / 2 - mpf(sigma) * mpf(delta_0) ** 2 / 2
+            truth = [float(stuck + slid), float(stuck + slid - kept)]
+        scale = ratio * limit * (D + 0.5 * h * h * -rate)
+        assert found == pytest.approx(truth, abs=4e-15 * scale)
+
+    check()
