@@ -96,20 +96,22 @@ static void find_to_bound(const FcCrossing* crossing, const FcNodes* nodes, FcPa
     }
 }
 
-// The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow if
-// the bristle is not stuck.
+// The distance of |delta|^2 from D^2 [m2] that counts as 0: the rounding of a stuck bristle's way, or else an error that
+// heat and force allow.
 static double close_to_bound(const FcCrossing* crossing, double D) {
     const FcInterval* interval = crossing->interval;
-    // An excess over the bound costs heat, whose tolerance goes with the path.
-    const double share = fc_kind(crossing) == FC_STICKS ? 0.0 : FC_SHARE_OF_EVENT;
-    const double allowed =
-        share * fc_least(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
-        fc_least(1.0, interval->speed * interval->duration / D);
-    const double of_time =
-        fabs(crossing->at.u) * fc_straight_pace(&crossing->part.in, crossing->at.u) + interval->duration;
-    const double rounding = 1e-13 * D + 4e-16 * fc_largest_push(crossing) * of_time;
-    return 2.0 * D *
-           fc_least(fc_most(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
+    double distance = 1e-13 * D;
+    if (fc_kind(crossing) == FC_STICKS) {
+        const double of_time =
+            fabs(crossing->at.u) * fc_straight_pace(&crossing->part.in, crossing->at.u) + interval->duration;
+        distance += 4e-16 * fc_largest_push(crossing) * of_time;
+    } else { // an excess over the bound costs heat, whose tolerance goes with the path
+        const double allowed =
+            fc_least(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
+            fc_least(1.0, interval->speed * interval->duration / D);
+        distance = fc_most(distance, FC_SHARE_OF_EVENT * allowed);
+    }
+    return 2.0 * D * fc_least(distance, 1e-3 * D); // if D moves by decades, nothing is near it
 }
 
 // The part of a panel by which it may begin or end beside a top. Derived: |delta| is less by its square, 1e-12
