@@ -53,6 +53,12 @@ static double load_after(FcLinearInput load, double h) {
     return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fc_least(after, 0.0) : after;
 }
 
+// V or V_y after a step: 0 within the rounding of its rate and of the product, so that a ramp to 0 ends there.
+static double velocity_after(double V, double rate, double h) {
+    const double after = V + rate * h;
+    return fabs(after) > DBL_EPSILON * fabs(V) ? after : 0.0;
+}
+
 // Whether a scene whose law does not use the separation has one above 0, with finite results.
 static bool has_contact(const FcScene* scene) {
     return scene->drive.d.value > scene->drive.vibration.a_d && isfinite(scene->at_E.area_0) &&
@@ -67,8 +73,8 @@ static void scene_from(FcFrictionContact* contact, double start, double rest,
     const FcVariables* v = &contact->state.variables;
     const bool is_used = fc_uses_separation(&v->friction, v->contact.model);
     FcDrive* drive = &scene->drive;
-    drive->V = (FcLinearInput){v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
-    drive->V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
+    drive->V = (FcLinearInput){velocity_after(v->V, rate[FC_INPUT_V], ahead), rate[FC_INPUT_V]};
+    drive->V_y = (FcLinearInput){velocity_after(v->V_y, rate[FC_INPUT_V_Y], ahead), rate[FC_INPUT_V_Y]};
     drive->d = (FcLinearInput){v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
     drive->E = (FcLinearInput){v->E, rate[FC_INPUT_E]};
     drive->load = (FcLinearInput){v->load, rate[FC_INPUT_LOAD]};
@@ -603,8 +609,8 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result,
     v->body.F += state->next_rate[FC_INPUT_F] * h;
     state->slips = fc_side_of_slip(reached);
     state->past = *past;
-    v->V += state->next_rate[FC_INPUT_V] * h;
-    v->V_y += state->next_rate[FC_INPUT_V_Y] * h;
+    v->V = velocity_after(v->V, state->next_rate[FC_INPUT_V], h);
+    v->V_y = velocity_after(v->V_y, state->next_rate[FC_INPUT_V_Y], h);
     v->d += state->next_rate[FC_INPUT_D] * h;
     v->E = fc_input_after((FcLinearInput){v->E, state->next_rate[FC_INPUT_E]}, h);
     v->load = load_after((FcLinearInput){v->load, state->next_rate[FC_INPUT_LOAD]}, h);

@@ -67,11 +67,11 @@ double fc_input_after(FcLinearInput input, double t) {
 
 FcDrive fc_drive_later(const FcDrive* drive, double t) {
     FcDrive later = *drive;
-    later.V.value = linear(drive->V, t);
-    later.d.value = linear(drive->d, t);
+    later.V.value = fc_input_after(drive->V, t);
+    later.d.value = fc_input_after(drive->d, t);
     later.E.value = fc_input_after(drive->E, t);
     later.load.value = fc_input_after(drive->load, t);
-    later.V_y.value = linear(drive->V_y, t);
+    later.V_y.value = fc_input_after(drive->V_y, t);
     return later;
 }
 

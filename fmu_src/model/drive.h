@@ -27,7 +27,7 @@ typedef struct {
     double rate;  // per second
 } FcLinearInput;
 
-// E or load after t [s], with one rounding. If an input falls by decades, the rounding of the product would
+// An input after t [s], with one rounding. If an input falls by decades, the rounding of the product would
 // be many times the rest.
 double fc_input_after(FcLinearInput input, double t);
 

@@ -100,25 +100,59 @@ static void cross_part(FcCrossing* crossing, int number) {
 // the mean by a sixth of that.
 static const double RIGID = DBL_EPSILON;
 
+static bool may_be_rigid(const FcInterval* interval) {
+    return interval->scene->friction->model != FC_COULOMB &&
+           interval->saturation <= RIGID * interval->speed * interval->duration; // at the most
+}
+
 // Whether the force is Coulomb's, but for what rounding cannot see. Then the motion ends on the bound.
 static void choose_rigid(FcCrossing* crossing) {
-    const FcInterval* interval = crossing->interval;
-    if (interval->scene->friction->model != FC_COULOMB &&
-        interval->saturation <= RIGID * interval->speed * interval->duration) { // at the most
+    if (may_be_rigid(crossing->interval)) {
         fc_begin_part(crossing, 0);
-        crossing->is_rigid = interval->saturation <= RIGID * fc_path_left(crossing, 0.0);
+        crossing->is_rigid = crossing->interval->saturation <= RIGID * fc_path_left(crossing, 0.0);
     }
 }
 
+// The path over its length that a bristle forgets. Derived: e^-64 of its start is left.
+static const double FORGOTTEN = 64.0;
+// The rest of an interval that rounding of the time hides: 256 eps of it.
+static const double HIDDEN = 0x1p-44;
+
+// Makes the interval [0, h] of a scene. If rounding sees a bristle in the rest of the path alone, that rest, which decides the
+// bristle's end, is an interval of its own, of the scene *later. Returns their number.
+static int make_intervals(const FcScene* scene, const FcSolverOptions* options, double h, FcScene* later,
+                          FcInterval of[2]) {
+    of[0] = fc_interval_make(scene, h, options);
+    if (!may_be_rigid(&of[0])) {
+        return 1;
+    }
+    const FcDrive across = fc_drive_across(&scene->drive);
+    double rest = h;
+    double way = INFINITY; // m, in the next rest
+    while (rest > HIDDEN * h && way > FORGOTTEN * of[0].saturation) {
+        rest *= 0x1p-4;
+        const double next = h - 0x1p-4 * rest;
+        way = hypot(fc_drive_displacement(&scene->drive, next, h), fc_drive_displacement(&across, next, h));
+    }
+    if (rest <= HIDDEN * h) {
+        return 1;
+    }
+    const double t = h - rest;
+    of[0] = fc_interval_make(scene, t, options);
+    *later = fc_scene_from(scene, t);
+    of[1] = fc_interval_make(later, h - t, options); // exact
+    return 2;
+}
+
 static void end_on_bound(FcCrossing* crossing) {
-    const double t = crossing->interval->duration;
-    const FcPlaneCoefficients end = fc_coefficients_at(crossing, t);
+    const FcPlaneCoefficients end = fc_coefficients_at(crossing, crossing->interval->duration);
     FcVector F = fc_plane_coulomb(&end);
-    if (end.speed == 0.0) { // it has come from there
-        F = (FcVector){crossing->part.side * end.limit, 0.0};
+    if (crossing->plane->on_line) { // V may end at 0, within rounding
+        F.x = crossing->part.side * end.limit;
     }
     fc_set_delta(crossing, (FcVector){F.x / end.sigma, F.y / end.sigma});
-    crossing->slips = crossing->is_slipping = crossing->is_bounded;
+    crossing->slips = crossing->is_slipping =
+        crossing->interval->scene->friction->model == FC_ELASTIC_PLASTIC;
     crossing->meetings += crossing->is_bounded;
 }
 
@@ -183,20 +217,16 @@ static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
     return scene->friction->model == FC_ELASTIC_PLASTIC && bristle.slips == 0 && farthest < (1.0 - 1e-9) * D;
 }
 
-void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
-                   FcStepResult* result) {
-    if (!(duration > 0.0) || isnan(result->delta)) { // no number of an earlier interval
-        return;
-    }
+static void march(const FcInterval* interval, FcStepResult* result) {
+    const FcScene* scene = interval->scene;
     const FcBristle bristle = fc_bristle_of(result);
     FcPlane plane;
     fc_plane_make(&plane, scene);
     plane.on_line = !fc_is_planar(scene, bristle);
-    const FcInterval interval = fc_interval_make(scene, duration, options);
     FcRoom room;
     FcCrossing crossing;
-    const bool sticks = stays_stuck(&interval, bristle);
-    fc_crossing_start(&crossing, &room, &plane, &interval, sticks, result->evaluations);
+    const bool sticks = stays_stuck(interval, bristle);
+    fc_crossing_start(&crossing, &room, &plane, interval, sticks, result->evaluations);
     crossing.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
     fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
     choose_rigid(&crossing);
@@ -211,30 +241,51 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     put_result(&crossing, result);
 }
 
+void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                   FcStepResult* result) {
+    if (!(duration > 0.0) || isnan(result->delta)) { // no number of an earlier interval
+        return;
+    }
+    FcScene later;
+    FcInterval of[2];
+    const int count = make_intervals(scene, options, duration, &later, of);
+    for (int i = 0; i < count; i++) {
+        march(&of[i], result);
+    }
+}
+
 FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
                    FcMap* across, double* evaluations) {
     if (isnan(start)) { // no number of an earlier interval
         return (FcMap){.offset = NAN};
     }
     assert(duration > 0.0 && start >= 0.0);
-    FcPlane plane;
-    fc_plane_make(&plane, scene);
-    plane.on_line = across == NULL;
-    const FcInterval interval = fc_interval_make(scene, duration, options);
-    FcRoom room;
-    FcCrossing crossing;
-    fc_crossing_start(&crossing, &room, &plane, &interval, false, *evaluations);
-    choose_rigid(&crossing);
-    crossing.from.for_any = true;
-    crossing.is_bounded = false;
-    crossing.scale = fc_most(start, crossing.first.limit / crossing.first.sigma);
-    start_control(&crossing, crossing.scale);
-    cross(&crossing);
-    *evaluations = crossing.evaluations;
-    if (across) {
-        *across = crossing.across_map;
+    FcMap along = {0};
+    FcMap over = {0};
+    FcScene later;
+    FcInterval of[2];
+    const int count = make_intervals(scene, options, duration, &later, of);
+    for (int i = 0; i < count; i++) {
+        FcPlane plane;
+        fc_plane_make(&plane, of[i].scene);
+        plane.on_line = across == NULL;
+        FcRoom room;
+        FcCrossing crossing;
+        fc_crossing_start(&crossing, &room, &plane, &of[i], false, *evaluations);
+        choose_rigid(&crossing);
+        crossing.from.for_any = true;
+        crossing.is_bounded = false;
+        crossing.scale = fc_most(start, crossing.first.limit / crossing.first.sigma);
+        start_control(&crossing, crossing.scale);
+        cross(&crossing);
+        *evaluations = crossing.evaluations;
+        fc_map_append(&along, &crossing.along);
+        fc_map_append(&over, &crossing.across_map);
     }
-    return crossing.along;
+    if (across) {
+        *across = over;
+    }
+    return along;
 }
 
 bool fc_march_may_meet(const FcScene* scene) {
