@@ -286,9 +286,13 @@ static double planned(const March* march) {
 static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel) {
     const FcStraight* in = &march->part.in;
     *h = fc_straight_place(in, fc_least(march->part.end, march->t + planned(march))) - u;
+    *h = *h > 0.0
+             ? *h
+             : fc_straight_place(in, march->part.end) - u; // what is planned is less than t is rounded by
     if (isfinite(in->length)) {
         *h = fc_least(*h, MOST_U);
     }
+    assert(*h > 0.0);
     for (int tries = 0;; tries++) {
         const bool is_solved = make(march, u, *h, nodes, panel);
         const double excess = march->is_known ? 0.0 : is_solved ? excess_of(march, nodes, panel) : HUGE_VAL;
@@ -507,6 +511,10 @@ static bool take_panel(March* march) {
     FcNodes nodes;
     FcBodyPanel panel;
     const double u = fc_straight_place(&march->part.in, march->t);
+    if (!(fc_straight_place(&march->part.in, march->part.end) > u)) { // the rest is less than u is rounded by
+        reach(march, march->part.end, march->at.delta);
+        return true;
+    }
     double h;
     Event event;
     if (!take_accurate(march, u, &h, &nodes, &panel)) {
