@@ -6,9 +6,9 @@
 //     real REFERENCE VALUE    a start value
 //     start                   leaves initialization mode
 //     rate REFERENCE VALUE    time derivative of an input over the next step
-//     step H COUNT            steps of H seconds; after each prints the scenario's number and the reals FIRST .. LAST
+//     step H COUNT            steps of H seconds; after each prints the scenario's number and the reals OUTPUT ...
 //
-// usage: run_scenarios LIBRARY GUID FIRST LAST < words
+// usage: run_scenarios LIBRARY GUID OUTPUT ... < words
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,13 +42,8 @@ static void new_scenario(const char* guid) {
     must(fmu.EnterInitializationMode(instance.component), "enter initialization mode");
 }
 
-static void take_steps(double* time, fmi2ValueReference first, fmi2ValueReference last) {
-    fmi2ValueReference references[MOST_OUTPUTS];
+static void take_steps(double* time, const fmi2ValueReference references[], size_t width) {
     double values[MOST_OUTPUTS];
-    const size_t width = last - first + 1;
-    for (fmi2ValueReference k = 0; k < width; k++) {
-        references[k] = first + k;
-    }
     const double h = number();
     for (int count = (int)number(); count > 0; count--) {
         must(fmu.DoStep(instance.component, *time, h, fmi2True), "step");
@@ -65,8 +60,13 @@ static void take_steps(double* time, fmi2ValueReference first, fmi2ValueReferenc
 int main(int argc, char** argv) {
     char word[16], why[FMI2_TEXT];
     double time = 0.0;
-    if (argc != 5 || !fmi2_library_open(&fmu, argv[1], why, sizeof why)) {
-        fprintf(stderr, "usage: run_scenarios LIBRARY GUID FIRST LAST < words\n");
+    fmi2ValueReference outputs[MOST_OUTPUTS];
+    size_t width = 0;
+    for (int k = 3; k < argc && width < MOST_OUTPUTS; k++) {
+        outputs[width++] = (fmi2ValueReference)atoi(argv[k]);
+    }
+    if (width == 0 || !fmi2_library_open(&fmu, argv[1], why, sizeof why)) {
+        fprintf(stderr, "usage: run_scenarios LIBRARY GUID OUTPUT ... < words\n");
         return 2;
     }
     while (scanf("%15s", word) == 1) {
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
         } else if (strcmp(word, "start") == 0) {
             must(fmu.ExitInitializationMode(c), word);
         } else if (strcmp(word, "step") == 0) {
-            take_steps(&time, (fmi2ValueReference)atoi(argv[3]), (fmi2ValueReference)atoi(argv[4]));
+            take_steps(&time, outputs, width);
         } else {
             const fmi2ValueReference reference = (fmi2ValueReference)number();
             const double value = number();
