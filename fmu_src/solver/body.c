@@ -11,6 +11,7 @@
 #include "solver/pieces.h"
 
 double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body) {
+    assert(body->m > 0.0);
     if (regime == FC_FREE || !fc_has_static_friction(scene->friction) || scene->friction->sigma_1 == 0.0) {
         return body->m;
     }
@@ -54,6 +55,7 @@ static double inside_bound(void* context, double size) {
 
 void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* now) {
     enum { SAMPLES = 64 }; // half of them pass over a smaller jump
+    assert(m > 0.0 && sigma_1 >= 0.0 && fc_has_static_friction(scene->friction));
     const double side = fc_side(fc_bristle_of(now));
     Drop of = {*scene, scene->drive.V.value, fabs(now->delta), side * sigma_1 / m};
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
@@ -94,7 +96,7 @@ bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const ch
 
 bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
                   FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && !fc_is_planar(scene, from));
+    assert(h >= 0.0 && body->m > 0.0 && options->tolerance > 0.0 && !fc_is_planar(scene, from));
     fc_result_start(result, from, 0.0);
     FcPieces pieces;
     fc_pieces_start(&pieces, scene, h);

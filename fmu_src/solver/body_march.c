@@ -314,6 +314,7 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
     double seen = *h; // the length of the last panel that shows the event
     *event = first_event(march, nodes, panel, &place);
     for (int cuts = 0; *event != NO_EVENT && cuts < MOST_CUTS; cuts++) {
+        assert(place > 0.0 && place < 1.5);
         *h *= place;
         if (!make(march, u, *h, nodes, panel)) {
             return false;
@@ -363,6 +364,7 @@ static void append(March* march, const FcNodes* nodes, const FcBodyPanel* panel)
     const bool slips = march->at.kind == FC_SLIPS;
     const bool moves = slips && !fc_scene_stiffness_is_constant(scene);
     FcStepResult* sums = &march->sums;
+    assert(nodes->duration >= 0.0 && fabs(nodes->t[START] - march->t) <= 1e-14 * march->part.end);
     for (int i = 0; i < STAGES; i++) {
         const double weight = FC_RADAU.weight[i] * nodes->tau[i];
         const double F = nodes->sigma[i] * panel->delta[i];
@@ -406,6 +408,7 @@ static void begin_free(March* march, double w, double w_rate) {
 // of the drop moves the mass. A bound that moves faster leaves the bristle free.
 static void begin_slip(March* march) {
     const FcFriction* friction = friction_of(march);
+    assert(march->is_bounded);
     FcPhase phase;
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double w = march->at.v + at.V.x;
@@ -441,6 +444,7 @@ static void begin_slip(March* march) {
 // t = t_c + L sinh(u).
 static void pass_reversal(March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
     const FcFriction* friction = friction_of(march);
+    assert(march->at.kind == FC_RELAXES);
     const double w_rate = panel->rate[LAST].w;
     march->at.side = w_rate > 0.0 ? 1 : w_rate < 0.0 ? -1 : -march->at.side;
     const double away = w_rate != 0.0 ? panel->w[LAST] / w_rate : 0.0; // s, from the reversal
@@ -536,6 +540,7 @@ static bool take_panel(March* march) {
 
 // Marches to the end of the part; false if rounding or the work ends it before.
 static bool march_part(March* march, double end) {
+    assert(march->t <= end);
     march->part.end = end;
     int stalled = 0;
     while (march->t < end) {
@@ -619,7 +624,7 @@ static void begin(March* march, FcBristle bristle) {
 
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0);
+    assert(h >= 0.0 && body->m > 0.0 && scene->friction->model != FC_COULOMB && !fc_scene_is_loose(scene));
     if (h == 0.0) {
         return true;
     }
@@ -636,6 +641,7 @@ bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, do
     if (!march_periods(&march, h)) {
         return fc_body_refuse(scene, body, h, "it needs too many evaluations; use smaller steps", message);
     }
+    assert(march.t == h);
     const bool slips = march.at.kind == FC_SLIPS;
     result->delta = march.at.delta;
     result->slips = slips && fc_has_static_friction(scene->friction) ? march.at.side : 0;

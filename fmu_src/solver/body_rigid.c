@@ -116,6 +116,7 @@ static void make_stick(const Rigid* of, double h, Panel* panel) {
 }
 
 static void make(const Rigid* of, double h, Panel* panel) {
+    assert(h > 0.0 && (of->side == 0) == (of->sticks || of->is_loose));
     (of->sticks ? make_stick : make_slip)(of, h, panel);
 }
 
@@ -215,6 +216,7 @@ bool fc_body_rests(const FcScene* scene) {
 
 double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* sticks) {
     const Rigid of = {.scene = scene, .body = body, .is_loose = fc_scene_is_loose(scene)};
+    assert(body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene));
     const double limit = limit_at(&of, 0.0);
     const double force = holding_force(&of, 0.0);
     *sticks = fabs(force) < limit;
@@ -223,6 +225,7 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
 
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && body->m > 0.0 && (scene->friction->model == FC_COULOMB || fc_scene_is_loose(scene)));
     const FcScene seen = fc_body_scene(scene, body, (FcBristle){0});
     const double w = fc_drive_V(&seen.drive, 0.0);
     const double F = fc_most(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));

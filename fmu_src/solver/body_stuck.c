@@ -1,5 +1,6 @@
 #include "solver/body_stuck.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/extremes.h"
@@ -11,6 +12,7 @@ static const double MOST_DRIVEN = 1e3;
 
 bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyStart* at, double t,
                          FcBodyStuck* stuck) {
+    assert(body->m > 0.0 && plane->on_line && t >= 0.0);
     const FcScene* scene = plane->scene;
     const FcDrive* drive = &scene->drive;
     if (at->kind != FC_STICKS || !fc_scene_stiffness_is_constant(scene) ||
@@ -37,6 +39,7 @@ bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyS
 }
 
 double fc_body_stuck_delta(const FcBodyStuck* stuck, double x, double* rate, double* integral) {
+    assert(x >= 0.0 && stuck->ringing > 0.0);
     // Differences to the start, which keep the digits of a short time.
     const double half_sine = sin(0.5 * stuck->ringing * x);
     const double less_1 = -2.0 * half_sine * half_sine; // cos(w x) - 1
@@ -55,6 +58,7 @@ double fc_body_stuck_delta(const FcBodyStuck* stuck, double x, double* rate, dou
 }
 
 double fc_body_stuck_free_time(const FcBodyStuck* stuck, double D, double end) {
+    assert(D > 0.0 && end >= 0.0);
     const double most =
         D * (1.0 + 0.5 * FC_ROUNDING_OF_BOUND) - fabs(stuck->Z) - hypot(stuck->C, stuck->S); // of |A + B t|
     if (!(most > fabs(stuck->A))) {

@@ -308,9 +308,9 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     const double force = fraction * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
     energy *= force * path;
-    const double moment = fc_least(h, ring);
-    const double of[] = {delta,  delta,  force * moment,   force * h,
-                         energy, energy, delta * path / h, force * moment * h / solver->body.m};
+    const double impulse = force * fc_least(h, ring);
+    const double moved = has_body(solver) ? impulse * h / solver->body.m : 0.0;
+    const double of[] = {delta, delta, impulse, force * h, energy, energy, delta * path / h, moved};
     for (int k = 0; k < solver->states; k++) {
         NV_Ith_S(solver->allowed, k) = fc_most(of[k], LEAST_ALLOWED);
     }
