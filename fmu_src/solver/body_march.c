@@ -276,7 +276,8 @@ static double planned(const March* march) {
         fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit).w;
     const double way = FC_MOST_OF_BOUND * at.static_limit / at.sigma;
     h = fc_least(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
-    h = fc_least(h, cbrt(6.0 * way / (drive->omega * drive->omega * fabs(drive->vibration.V_1) + DBL_MIN)));
+    const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
+    h = jerk > 0.0 ? fc_least(h, cbrt(6.0 * way / jerk)) : h;
     return march->is_known  ? fc_least(h, MOST_PHASE / ringing)
            : march->h > 0.0 ? h
                             : fc_least(h, 1.0 / ringing);
@@ -364,7 +365,8 @@ static void append(March* march, const FcNodes* nodes, const FcBodyPanel* panel)
     const bool slips = march->at.kind == FC_SLIPS;
     const bool moves = slips && !fc_scene_stiffness_is_constant(scene);
     FcStepResult* sums = &march->sums;
-    assert(nodes->duration >= 0.0 && fabs(nodes->t[START] - march->t) <= 1e-14 * march->part.end);
+    assert(nodes->duration >= 0.0);
+    assert(fabs(nodes->t[START] - march->t) <= 1e-14 * march->interval->duration); // rounding of the variable
     for (int i = 0; i < STAGES; i++) {
         const double weight = FC_RADAU.weight[i] * nodes->tau[i];
         const double F = nodes->sigma[i] * panel->delta[i];

@@ -232,8 +232,8 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
     Rigid of = {.scene = scene,
                 .body = body,
                 .is_loose = fc_scene_is_loose(scene),
-                .allowed =
-                    fc_most(SHARE * options->tolerance * options->largest, ROUNDING * (options->largest + F)),
+                .allowed = fc_most(SHARE * options->tolerance * options->largest,
+                                   ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
                 .v = body->v};
     of.side = of.is_loose ? 0 : w < 0.0 ? -1 : 1;
     if (fc_body_rests(&seen)) {

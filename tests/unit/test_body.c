@@ -54,6 +54,20 @@ static void an_open_contact_leaves_the_mass_free(void) {
     }
 }
 
+// Without any force no error is allowed either.
+static void a_mass_on_which_no_force_acts_drifts(void) {
+    const FcContactParameters contact = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_LOAD);
+    const FcFriction friction = {.model = FC_DAHL, .limit = FC_LIMIT_LOAD};
+    const FcScene scene = scene_of(&contact, &friction, (FcLinearInput){0.2, 0.0}, 0.7, 0.0);
+    const FcSolverOptions options = {.tolerance = 1e-8, .step_size = 1e-8};
+    FcBody body = {.m = M, .v = 0.1};
+    FcStepResult result;
+    FcMessage message = {""};
+    CHECK(fc_body_step(&scene, NULL, &options, 7e-3, (FcBristle){0}, &body, &result, &message));
+    CHECK(body.v == 0.1);
+    CHECK_WITHIN(body.x, 0.1 * 7e-3, 7e-17); // by the rounding of 470 panels
+}
+
 static const FcFriction COULOMB = {.model = FC_COULOMB, .limit = FC_LIMIT_CONSTANT};
 
 static void coulomb_stops_the_mass_and_holds_it(void) {
@@ -120,6 +134,7 @@ static void the_acceleration_is_that_of_its_force(void) {
 
 int main(void) {
     an_open_contact_leaves_the_mass_free();
+    a_mass_on_which_no_force_acts_drifts();
     coulomb_stops_the_mass_and_holds_it();
     coulomb_breaks_away_where_the_force_exceeds_the_limit();
     a_mass_that_sticks_follows_the_vibration();
