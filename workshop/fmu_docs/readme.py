@@ -29,7 +29,7 @@ STILL = {"vibration.V_1": 0.0, "vibration.a_d": 0.0}
 
 
 def front(fmu: FrictionFmu, path: Path) -> None:
-    """The README's mass of 1 kg under 30 N, without and with the vibration: steps of 1 ms over those of 10 us."""
+    """The README's mass of 1 kg under 30 N, with and without vibration: steps of 1 ms over those of 10 us."""
     figure, axes = style.subplots(size=(7.2, 3.0))
     pulled = {"V": 0.0, "contact.stiffnessScale": 4.417e-7, "body.m": 1.0, "body.F": 30.0}
     looks = (V_1, style.ORANGE, "with a vibration of 1.44 m/s at 20 kHz"), (0.0, style.BLUE, "without")
