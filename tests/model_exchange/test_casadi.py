@@ -36,7 +36,7 @@ def integrated(fmu: FrictionFmu, scene: Scene) -> dict[str, float]:
     energy = scene.F_C * max(abs(scene.V), scene.V_1) * scene.h
     size_of = {"delta": length, "delta_y": length, "W_f": energy, "Q_f": energy}
     sizes = casadi.DM([size_of[name] for name in dae.x()])
-    inputs = casadi.DM([getattr(scene, name) for name in dae.u()])
+    inputs = casadi.DM([getattr(scene, name, 0.0) for name in dae.u()])
     t, x = casadi.MX.sym("t"), casadi.MX.sym("x", len(dae.x()))
     rates, _ = contact(t, sizes * x, inputs)
     solver = casadi.integrator(

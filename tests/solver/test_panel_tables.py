@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 from scipy.special import roots_jacobi
 
-from workshop.constants.panel_tables import HEADER, SAMPLES, STAGES, TAIL, Rule, mpf, radau_nodes, tables, values_at
+from workshop.constants.panel_tables import (
+    HEADER,
+    SAMPLES,
+    STAGES,
+    TAIL,
+    Rule,
+    mpf,
+    radau_nodes,
+    tables,
+    values_at,
+)
 
 RULE = Rule(radau_nodes(STAGES))
 POINTS = [*RULE.nodes, mpf(0)]

@@ -66,7 +66,8 @@ def controls(variables: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
     known = {spec["name"] for spec in found}
     for each in variables:
         name, start = each["name"], each["start"]
-        if name not in known and (each["causality"] == "input" or each["variability"] == "tunable"):
+        can_change = each["causality"] == "input" or each["variability"] == "tunable"
+        if name not in known and can_change and not name.startswith("body."):  # the page has no mass
             group, _, words = name.rpartition(".")
             span = {"low": 1e-3 * (start or 1.0), "high": 1e3 * (start or 1.0), "off": not start}
             look = {"group": group.title() or "Other", "symbol": "", "words": words, "scale": "log"}

@@ -84,6 +84,7 @@ USERS = {
     },
     "Examples": {
         "Overview": "examples/README",
+        "A mass inside": "examples/mass-inside/README",
         "A mass on a belt": "examples/stick-slip/README",
         "A mass in model exchange": "examples/model-exchange/README",
         "A friction law": "examples/friction-law/README",
