@@ -18,6 +18,9 @@ typedef struct {
 
 FC_INLINE double fc_larger(FcPair pair) { return fc_most(fabs(pair[0]), fabs(pair[1])) + 1e-300; }
 
+// a / b, at the most 1; no quotient overflows.
+FC_INLINE double fc_fall(double a, double b) { return fc_least(a, b) / b; }
+
 FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
     FcPair high = {0.0, 0.0};
     FcPair middle = {0.0, 0.0};
@@ -29,9 +32,9 @@ FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
     }
     const double top = fc_larger(high);
     const double before = fc_larger(middle);
-    const double square =
-        fc_most(fc_most(0.5 * fabs(at_start) / top, top / before), sqrt(before / fc_larger(low)));
-    return (FcTail){top, fc_least(1.0, sqrt(square))};
+    const double square = fc_most(fc_most(fc_fall(0.5 * fabs(at_start), top), fc_fall(top, before)),
+                                  sqrt(fc_fall(before, fc_larger(low))));
+    return (FcTail){top, sqrt(square)};
 }
 
 // x^6: the rest of an error that is orthogonal to the polynomials of degree 7, weighted with a function whose
