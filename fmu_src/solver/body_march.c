@@ -315,7 +315,7 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
     double seen = *h; // the length of the last panel that shows the event
     *event = first_event(march, nodes, panel, &place);
     for (int cuts = 0; *event != NO_EVENT && cuts < MOST_CUTS; cuts++) {
-        assert(place > 0.0 && place < 1.5);
+        assert(place > 0.0 && place <= fc_most(1.5, seen / *h));
         *h *= place;
         if (!make(march, u, *h, nodes, panel)) {
             return false;
