@@ -54,9 +54,12 @@ void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcC
         return;
     }
     scene->is_open = !(drive->load.value > NOTHING);
-    const bool rests = !scene->floats && !scene->is_open;
-    drive->d.value = rests ? rest_separation(scene, at_E->load_0, drive->load.value) : 0.0;
-    drive->d.rate = 0.0;
+    drive->d = (FcLinearInput){1.0, 0.0}; // m, of an open contact: no force depends on it
+    if (scene->floats) {
+        drive->d.value = 0.0;
+    } else if (!scene->is_open) {
+        drive->d.value = rest_separation(scene, at_E->load_0, drive->load.value);
+    }
 }
 
 double fc_scene_closed_by(const FcScene* scene) {

@@ -119,7 +119,7 @@ static void make_stick(const Rigid* of, double h, Panel* panel) {
 }
 
 static void make(const Rigid* of, double h, Panel* panel) {
-    assert(h > 0.0 && (of->side == 0) == (of->sticks || of->is_loose));
+    assert(h >= 0.0 && (of->side == 0) == (of->sticks || of->is_loose));
     (of->sticks ? make_stick : make_slip)(of, h, panel);
 }
 
@@ -252,7 +252,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
         double length = fc_least(fc_least(next, longest), rest);
         Panel panel;
         const double part = take_accurate(&of, &length, &panel, &result->evaluations);
-        if (result->evaluations > FC_MOST_EVALUATIONS) {
+        if (result->evaluations > FC_MOST_EVALUATIONS || length == 0.0) { // by underflow
             return fc_message_set(message, "body.m = %.9g kg: the step needs more than %.0e evaluations",
                                   body->m, FC_MOST_EVALUATIONS);
         }
