@@ -16,10 +16,13 @@ typedef struct {
     double fall;
 } FcTail;
 
-FC_INLINE double fc_larger(FcPair pair) { return fc_most(fabs(pair[0]), fabs(pair[1])) + 1e-300; }
+FC_INLINE double fc_larger(FcPair pair) { return fc_most(fabs(pair[0]), fabs(pair[1])); }
 
-// a / b, at the most 1; no quotient overflows.
-FC_INLINE double fc_fall(double a, double b) { return fc_least(a, b) / b; }
+// a / b, at the most 1. No quotient overflows.
+FC_INLINE double fc_fall(double a, double b) {
+    const double over = b + 1e-300;
+    return fc_least(a, over) / over;
+}
 
 FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
     FcPair high = {0.0, 0.0};
