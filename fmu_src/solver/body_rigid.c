@@ -27,9 +27,6 @@ static const double SHARE = 0.01;
 // The rounding of a panel's force, over the forces.
 static const double ROUNDING = 1e-13;
 
-// What is allowed where no force acts [N]: an estimate of 0 is some 1e-300 (radau.h).
-static const double NO_FORCE = 1e-290;
-
 // An inaccurate panel is shortened by this factor, at most so often; others change the number of tries.
 static const double SHORTENED = 0.7;
 enum { MOST_TRIES = 60 };
@@ -236,7 +233,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
                 .body = body,
                 .is_loose = fc_scene_is_loose(scene),
                 .allowed = fc_most(SHARE * options->tolerance * options->largest,
-                                   ROUNDING * (options->largest + F) + NO_FORCE),
+                                   ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
                 .v = body->v};
     of.side = of.is_loose ? 0 : w < 0.0 ? -1 : 1;
     if (fc_body_rests(&seen)) {
