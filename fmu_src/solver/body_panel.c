@@ -233,7 +233,7 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
 FcBodyRates fc_body_rates(const FcPlane* plane, const FcBody* body, const FcBodyStart* at, double t,
                           FcPhase phase, double sigma, double static_limit) {
     const FcFriction* friction = plane->scene->friction;
-    assert(sigma > 0.0 && static_limit > 0.0 && (at->kind == FC_STICKS) == (at->side == 0));
+    assert(sigma >= 0.0 && static_limit > 0.0 && (at->kind == FC_STICKS) == (at->side == 0));
     const FcVelocity V = fc_drive_velocity_at_phase(&plane->scene->drive, t, phase);
     const double w = at->v + V.V;
     const Limit limit = limit_at(plane, static_limit, w);

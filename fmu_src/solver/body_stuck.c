@@ -39,7 +39,7 @@ bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyS
 }
 
 double fc_body_stuck_delta(const FcBodyStuck* stuck, double x, double* rate, double* integral) {
-    assert(x >= 0.0 && stuck->ringing > 0.0);
+    assert(x >= 0.0 && stuck->ringing >= 0.0);
     // Differences to the start, which keep the digits of a short time.
     const double half_sine = sin(0.5 * stuck->ringing * x);
     const double less_1 = -2.0 * half_sine * half_sine; // cos(w x) - 1

@@ -231,7 +231,7 @@ static void with_library(const FcPlane* plane, const FcPart* part, double u, dou
 }
 
 void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes) {
-    assert(h > 0.0 && (plane->on_line ? part->side * part->side <= 1 : part->side == 0));
+    assert(h >= 0.0 && (plane->on_line ? part->side * part->side <= 1 : part->side == 0));
     if (!with_series(plane, part, u, h, nodes)) {
         with_library(plane, part, u, h, nodes);
     }

@@ -22,7 +22,7 @@ typedef struct {
     int side;                          // along a line, the sign of V; else 0
 } FcNodes;
 
-// The panel [u, u + h] of the part, h > 0. Rounding takes no point out of the part.
+// The panel [u, u + h] of the part, h > 0, or 0 by underflow. Rounding takes no point out of the part.
 void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes);
 FC_TWICE(fc_nodes_make);
 
