@@ -1,12 +1,12 @@
 # What stands beside the model in the FMU: index.html, fmi-ls-ref.html, the licences, the icon, and the folder of related files.
-# Gives documentation_arguments for workshop.packing.archive, and documentation_files that they depend on.
+# Gives documentation_arguments for tools.packing.archive, and documentation_files that they depend on.
 
 set(documentation_page "${CMAKE_BINARY_DIR}/generated/index.html")
 file(GLOB documentation_parts CONFIGURE_DEPENDS docs/fmu/*.html docs/fmu/*.svg)
 add_custom_command(
     OUTPUT "${documentation_page}"
-    COMMAND Python3::Interpreter -B -m workshop.fmu_docs.page "${documentation_page}"
-    DEPENDS "${model_description}" ${documentation_parts} workshop/fmu_docs/page.py workshop/description.py
+    COMMAND Python3::Interpreter -B -m tools.packing.documentation "${documentation_page}"
+    DEPENDS "${model_description}" ${documentation_parts} tools/packing/documentation.py tools/description.py
     WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}"
     COMMENT "Writing the documentation"
     VERBATIM)

@@ -106,7 +106,7 @@ def fmu(fmu_path: Path) -> Iterator[FrictionFmu]:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """A headless Chromium: a process can have one at a time."""
-    from workshop.browser import chromium, find_browser
+    from tools.browser import chromium, find_browser
 
     if find_browser() is None:
         pytest.skip("no Chromium is installed")

@@ -12,12 +12,12 @@ import pandas as pd
 from fmpy import simulate_fmu
 from fmpy.util import read_csv, write_csv
 
+from examples.systems import parameters, run_fmpy, run_libcosim, write_ssp
 from frictioncontact import friction_law, simulate
 from frictioncontact.errors import UserError
-from workshop.bench.mass_inside import ROWS, exact
-from workshop.build import build_fmu
-from workshop.project import ROOT
-from workshop.systems import parameters, run_fmpy, run_libcosim, write_ssp
+from tools.bench.mass_inside import ROWS, exact
+from tools.build import build_fmu
+from tools.project import ROOT
 
 HERE = Path(__file__).resolve().parent
 H, SLIDES = 1e-3, 50  # s, and the steps of the slider

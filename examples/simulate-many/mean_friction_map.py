@@ -15,8 +15,8 @@ import numpy as np
 from frictioncontact import style
 from frictioncontact.batch import simulate_many
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
-from workshop.build import build_fmu
-from workshop.project import ROOT
+from tools.build import build_fmu
+from tools.project import ROOT
 
 parser = argparse.ArgumentParser(
     description="Mean friction against stiffness and velocity, a million scenarios."

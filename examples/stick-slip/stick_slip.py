@@ -17,14 +17,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
+from examples.systems import parameters, run_fmpy, run_libcosim, with_parameters, write_ssp
 from frictioncontact import style
 from frictioncontact.advice.stuck_mass import JACOBI, least_damping
 from frictioncontact.errors import UserError
 from frictioncontact.parameters import E_FULL, SEPARATION
-from workshop.build import build_fmu
-from workshop.project import ROOT
-from workshop.reference import rest, scene_of
-from workshop.systems import parameters, run_fmpy, run_libcosim, with_parameters, write_ssp
+from tools.build import build_fmu
+from tools.project import ROOT
+from tools.reference import rest, scene_of
 
 HERE = Path(__file__).resolve().parent
 DURATION = 1.0  # s, two periods of the belt's unsteadiness

@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import odeint
 
+from examples.systems import parameters, run_libcosim, write_ssp
 from frictioncontact import style
 from frictioncontact.errors import UserError
 from frictioncontact.parameters import E_REDUCED, SEPARATION
-from workshop.build import build_fmu
-from workshop.project import ROOT
-from workshop.reference import rest, scene_of
-from workshop.systems import parameters, run_libcosim, write_ssp
+from tools.build import build_fmu
+from tools.project import ROOT
+from tools.reference import rest, scene_of
 
 HERE = Path(__file__).resolve().parent
 DURATION = 0.1  # s

@@ -1,6 +1,6 @@
 // The variables of modelDescription.xml, for the C code.
 //
-// modelDescription.xml is the only source: workshop/packing/variable_table.py writes the table at build time,
+// modelDescription.xml is the only source: tools/packing/variable_table.py writes the table at build time,
 // and fc_variables[value reference] is the variable with that reference.
 #ifndef FC_FMI2_VARIABLES_H
 #define FC_FMI2_VARIABLES_H

@@ -1,4 +1,4 @@
-// Made by workshop.constants.panel_tables, which describes the entries.
+// Made by tools.constants.panel_tables, which describes the entries.
 // clang-format off
 #ifndef FC_SOLVER_PANEL_TABLES_H
 #define FC_SOLVER_PANEL_TABLES_H

@@ -1,7 +1,7 @@
 // All constants of the solver that are chosen and not derived: each with its meaning, and the width of its
 // plateau, that is the range over which neither the misses of the hunt nor the evaluations change.
 //
-// workshop.constants.plateaus measures the evaluations and the worst error of the scenes of the benchmarks at half and
+// tools.constants.plateaus measures the evaluations and the worst error of the scenes of the benchmarks at half and
 // twice of each; "0.99, 1.02" is what half and twice of it cost in evaluations. The tolerance, times the largest force of the
 // step, bounds the errors of F_t at the end of a communication step and of its mean. Work and heat have the same bound over
 // the path. "Allowed" is that product [N].

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.driver import Bench
-from workshop.build import build_targets
+from tools.bench.driver import Bench
+from tools.build import build_targets
 
 
 @pytest.fixture(scope="session")

@@ -18,9 +18,9 @@ from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
-from workshop.bench.cases import Case
-from workshop.bench.levels import largest_errors, runs_of
-from workshop.reference import changed, scene_of, settled, start_values, step
+from tools.bench.cases import Case
+from tools.bench.levels import largest_errors, runs_of
+from tools.reference import changed, scene_of, settled, start_values, step
 
 F_C = 55.0  # N
 LAWS = ("Dahl", "LuGre", "ElasticPlastic", "Coulomb")

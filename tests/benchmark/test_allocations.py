@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from workshop.bench.driver import Bench, Job
+from tools.bench.driver import Bench, Job
 
 VIBRATING = {"vibration.V_1": 1.44, "vibration.a_d": 1.1e-6}
 INPUTS = {"V": np.linspace(-0.1, 0.1, 8), "d": np.linspace(13e-6, 15e-6, 8), "E": np.linspace(5e10, 6e10, 8)}

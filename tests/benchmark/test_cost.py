@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from frictioncontact.errors import UserError
-from workshop.bench import cost
-from workshop.bench.cases import sampled
-from workshop.bench.cost import Cost, Scene, counted, ratios, vibrating_scenes
-from workshop.bench.driver import Bench
+from tools.bench import cost
+from tools.bench.cases import sampled
+from tools.bench.cost import Cost, Scene, counted, ratios, vibrating_scenes
+from tools.bench.driver import Bench
 
 needs_valgrind = pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is missing")
 HELD = cost.held()

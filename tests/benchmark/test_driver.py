@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu, simulate
-from workshop.bench.cases import PLAIN_PROGRAMS, Case, cases, expected, plain, sampled, vibrating
-from workshop.bench.driver import Bench, Outcome
+from tools.bench.cases import PLAIN_PROGRAMS, Case, cases, expected, plain, sampled, vibrating
+from tools.bench.driver import Bench, Outcome
 
 SOFT = replace(vibrating(6e6), starts=(0.0,), count=2)
 RIGHT: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # what several tests ask for

@@ -8,7 +8,7 @@ import pandas
 import pytest
 
 from frictioncontact.command import main
-from workshop.bench import levels
+from tools.bench import levels
 
 
 def test_the_table_of_scenes_shows_where_simpler_models_fail(

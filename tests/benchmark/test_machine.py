@@ -1,4 +1,4 @@
-"""The errors of masters on docs/machine.md are those that workshop/bench/machine.py measures."""
+"""The errors of masters on docs/machine.md are those that tools/bench/machine.py measures."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import pytest
 
 from frictioncontact.advice.stuck_mass import GAUSS_SEIDEL, JACOBI, LINEAR
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench import machine
-from workshop.project import ROOT
+from tools.bench import machine
+from tools.project import ROOT
 
 PAGE = (ROOT / "docs" / "machine.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| (.+) \| `\w+` \| [\d.]+ \| ([\d.]+) % \|$", re.MULTILINE)

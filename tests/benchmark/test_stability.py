@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.coupling import (
+from tools.bench.coupling import (
     COUPLINGS,
     Belt,
     cosimulate,
@@ -15,7 +15,7 @@ from workshop.bench.coupling import (
     monolithic,
     theoretical_edge,
 )
-from workshop.bench.stability import EDGES, classify, measured_edge
+from tools.bench.stability import EDGES, classify, measured_edge
 
 
 @pytest.mark.parametrize(("method", "edge"), [(m, edge) for m, limits in EDGES.items() for edge in limits])

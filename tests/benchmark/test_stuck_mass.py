@@ -25,7 +25,7 @@ from frictioncontact.advice.stuck_mass import (
 )
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
-from workshop.project import ROOT
+from tools.project import ROOT
 
 M, SIGMA = 1.0, 1e6
 TIME = math.sqrt(M / SIGMA)

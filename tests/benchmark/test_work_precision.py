@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from workshop.bench import work_precision
-from workshop.bench.driver import Bench
-from workshop.bench.work_precision import Point, cost_at, period_cells, period_points, step_size_points
+from tools.bench import work_precision
+from tools.bench.driver import Bench
+from tools.bench.work_precision import Point, cost_at, period_cells, period_points, step_size_points
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:

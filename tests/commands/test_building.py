@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from workshop.packing.archive import write_fmu
-from workshop.project import ROOT
+from tools.packing.archive import write_fmu
+from tools.project import ROOT
 
 FMU = "build/debug/FrictionContact.fmu"
 BINARY = "binaries/linux64/FrictionContact.so"
-BUILD = [sys.executable, "-m", "workshop", "workshop.build", "--preset", "debug"]
+BUILD = [sys.executable, "-m", "tools", "tools.build", "--preset", "debug"]
 PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
 LINUX_ONLY = pytest.mark.skipif(sys.platform != "linux", reason="shared libraries are loaded as on Linux")
 
@@ -102,7 +102,7 @@ time.sleep(3600)
 
 
 @LINUX_ONLY
-@pytest.mark.parametrize("words", ["workshop frictioncontact.gap --help", "frictioncontact simulate --help"])
+@pytest.mark.parametrize("words", ["tools frictioncontact.gap --help", "frictioncontact simulate --help"])
 def test_interrupted_while_importing(tmp_path: Path, words: str) -> None:
     """With a slow numpy. Python drops an exception in a destructor, and imports may catch or change one."""
     reached = tmp_path / "reached"

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from figures.pages import laws, tutorial
+from figures.pages.readme import SCENE
 from frictioncontact import table2
 from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
 from frictioncontact.parameters import (
@@ -23,8 +25,6 @@ from frictioncontact.parameters import (
     start_values,
 )
 from frictioncontact.table2 import percent
-from workshop.fmu_docs import laws, tutorial
-from workshop.fmu_docs.readme import SCENE
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])

@@ -11,8 +11,8 @@ import pytest
 from frictioncontact import __main__ as entry
 from frictioncontact import command, gap, simulation
 from frictioncontact.identification import command as identify
-from workshop import __main__ as clone
-from workshop import build
+from tools import __main__ as clone
+from tools import build
 
 
 def test_help_says_what_it_is_called(

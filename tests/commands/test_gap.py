@@ -56,7 +56,7 @@ def test_values_out_of_bounds_are_refused(words: str, message: str) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
 def test_full_standard_output_is_named() -> None:
     with Path("/dev/full").open("w") as full:
-        command = [sys.executable, "-P", "-m", "workshop", "frictioncontact.gap"]
+        command = [sys.executable, "-P", "-m", "tools", "frictioncontact.gap"]
         ran = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (ran.returncode, ran.stderr) == (1, "error: standard output: No space left on device\n")
 
@@ -65,7 +65,7 @@ def test_a_reader_that_has_seen_enough_is_no_error() -> None:
     """As `| head -1` reads."""
     reading, writing = os.pipe()
     os.close(reading)
-    command = [sys.executable, "-P", "-m", "workshop", "frictioncontact.gap"]
+    command = [sys.executable, "-P", "-m", "tools", "frictioncontact.gap"]
     ran = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
     os.close(writing)
     assert ran.stderr == ""

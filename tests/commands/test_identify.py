@@ -22,9 +22,9 @@ from frictioncontact.identification.experiment import Record, Rows, parameter
 from frictioncontact.identification.fit import search
 from frictioncontact.identification.judge import CHANCE, misfits, suspicion
 from frictioncontact.parameters import STIFFNESS_PRINTED
-from workshop.project import ROOT
-from workshop.validate import longitudinal
-from workshop.validate.measurements import sliding
+from tools.project import ROOT
+from tools.validate import longitudinal
+from tools.validate.measurements import sliding
 
 GUIDE = " ".join((ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8").split())
 DRY = ROOT / "data" / "dry.csv"

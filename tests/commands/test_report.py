@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from figures.report import command as report
 from frictioncontact.command import main
-from workshop.report import command as report
 
 SECTIONS = (
     "claims table-2 figures heights-and-load regimes-and-limits sensitivities errata identification".split()

@@ -11,7 +11,7 @@ import pytest
 from frictioncontact import table2
 from frictioncontact.command import main
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, start_values
-from workshop.reference import scene_of, settled
+from tools.reference import scene_of, settled
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from figures import validate
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
-from workshop.project import ROOT
-from workshop.validate import command, longitudinal, measurements, normal, record
+from tools.project import ROOT
+from tools.validate import longitudinal, measurements, normal, record
 
 PAGE = " ".join((ROOT / "docs" / "validation.md").read_text(encoding="utf-8").split())
 
@@ -96,7 +97,7 @@ def in_short_pieces(part: measurements.Record, fit: record.RecordFit, bounded: b
 def test_the_command_prints_its_tables_and_draws(
     fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    main(command, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "out")])
+    main(validate, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "out")])
     text = capsys.readouterr().out
     assert "Longitudinal vibration, dry" in text and "Normal vibration" in text
     assert sorted(path.suffix for path in (tmp_path / "out").iterdir()) == [".png", ".png"]

@@ -11,7 +11,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from workshop.project import ROOT
+from tools.project import ROOT
 
 PATH = ROOT / "data" / "gaussian_heights.csv"
 

@@ -10,8 +10,8 @@ import pytest
 
 import frictioncontact as fc
 from frictioncontact.fmu import FrictionFmu, Session
-from workshop.project import ROOT
-from workshop.reference import scene_of, settled
+from tools.project import ROOT
+from tools.reference import scene_of, settled
 
 sys.path.append(str(ROOT / "examples" / "calibration"))
 from calibrate import GUESS, SCENE, STEP, STOP, TRUTH, calibrate, forces

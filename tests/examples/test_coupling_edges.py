@@ -11,10 +11,10 @@ import pytest
 from scipy.optimize import brentq
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.coupling import Belt, transition
-from workshop.project import ROOT
+from tools.bench.coupling import Belt, transition
+from tools.project import ROOT
 
-systems = pytest.importorskip("workshop.systems", reason="libcosimpy is not installed")
+systems = pytest.importorskip("examples.systems", reason="libcosimpy is not installed")
 DESCRIPTION = (ROOT / "examples" / "stick-slip" / "SystemStructure.ssd").read_text(encoding="utf-8")
 SPEED = 1e-6  # m/s, from which the swing starts: the bristle does not creep at it
 COUNT = 600  # steps

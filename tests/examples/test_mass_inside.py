@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from workshop.project import ROOT
+from tools.project import ROOT
 
 pytest.importorskip("libcosimpy", reason="libcosimpy is not installed")
 sys.path.append(str(ROOT / "examples" / "mass-inside"))

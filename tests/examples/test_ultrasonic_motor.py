@@ -12,7 +12,7 @@ from scipy.integrate import odeint
 from scipy.optimize import brentq
 from scipy.special import i0
 
-from workshop.project import ROOT
+from tools.project import ROOT
 
 FOLDER = ROOT / "examples" / "ultrasonic-motor"
 sys.path.append(str(FOLDER))

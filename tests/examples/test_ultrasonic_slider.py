@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workshop.project import ROOT
+from tools.project import ROOT
 
 slider = pytest.importorskip("ultrasonic_slider", reason="libcosimpy is not installed")
 sys.path.append(str(ROOT / "examples" / "friction-law"))
 import slider as by_law  # noqa: E402
 
-from workshop.systems import run_fmpy  # noqa: E402
+from examples.systems import run_fmpy  # noqa: E402
 
 PAGE = (ROOT / "examples" / "ultrasonic-slider" / "README.md").read_text(encoding="utf-8")
 ROWS = re.findall(r"^\| (F_t|F_t_mean) \| \**([\d.]+) ms\** \| (\d+) \| \**([\d.]+)", PAGE, re.MULTILINE)

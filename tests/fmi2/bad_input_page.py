@@ -9,8 +9,8 @@ from call_table import STATES, TABLE
 from fmi_library import CO_SIMULATION, MODEL_EXCHANGE, Instance, Library
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.build import build_fmu
-from workshop.project import ROOT
+from tools.build import build_fmu
+from tools.project import ROOT
 
 PAGE = ROOT / "docs" / "bad-input.md"
 FMI2_ERROR = 3

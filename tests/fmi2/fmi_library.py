@@ -14,7 +14,7 @@ import fmpy
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi2 import fmi2EventInfo as EventInfo
 
-from workshop import description
+from tools import description
 
 STATES, INDICATORS = 4, 4
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fmi_library import CO_SIMULATION, ERROR, MODEL_EXCHANGE, OK, Instance
 
-from workshop.description import description, read
+from tools.description import description, read
 
 SETTLED = ("F_t_settled", "F_y_settled")
 OUTPUTS = tuple(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import pytest
 from fmi_library import ERROR, OK, Instance, Library
 
-from workshop import description
+from tools import description
 
 VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6}
 VIBRATING |= {"contact.stiffnessScale": 4.4e-7, "friction.sigma_2": 3.0, "friction.V_S": 0.5}

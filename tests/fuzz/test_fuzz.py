@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from workshop.build import build_targets
+from tools.build import build_targets
 
 CORPUS = Path(__file__).with_name("corpus")
 

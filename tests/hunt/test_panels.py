@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.build import build_targets
+from tools.build import build_targets
 
 STEP = 3e-5  # s, less than two periods: one interval
 SCENES = {  # in the hunt's words, and as start values of the FMU

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from workshop.build import build_targets
+from tools.build import build_targets
 
 WHERE = "tolerance=1e-06 law=LuGre"
 SCENES = Path(__file__).with_name("scenes.txt")

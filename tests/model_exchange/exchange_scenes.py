@@ -8,8 +8,8 @@ from typing import Any
 from solver.test_tolerance import drawn as of_any_stiffness
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.exchange import Host
-from workshop.reference import CHOICES, FIELDS, INPUTS, LAWS_WITH_A_STATE, Scene, start_values, step
+from tools.exchange import Host
+from tools.reference import CHOICES, FIELDS, INPUTS, LAWS_WITH_A_STATE, Scene, start_values, step
 
 OUTPUTS = 40  # points at which the host ends a step of its own
 LARGEST = {"F_t": False, "F_y": False, "W_f": True, "Q_f": True}  # whether it is an energy

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.exchange import Host
+from tools.exchange import Host
 
 PERIOD = 5e-5  # s
 

@@ -9,7 +9,7 @@ from model_exchange.exchange_scenes import drawn, error, errors, run
 from solver.test_tolerance import results
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.reference import changed
+from tools.reference import changed
 
 TOLERANCE = 1e-7  # of the host, for every step; the error of a run is the sum of some of them
 ALLOWED = 100 * TOLERANCE

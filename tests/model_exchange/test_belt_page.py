@@ -1,4 +1,4 @@
-"""A mass held by friction, by one integrator: `python -m workshop.bench.exchange`, docs/model-exchange.md."""
+"""A mass held by friction, by one integrator: `python -m tools.bench.exchange`, docs/model-exchange.md."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import pytest
 from fmpy import simulate_fmu
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.exchange import CALLS, LAWS, Belt, Run, errors, exchange, reference, simulate
-from workshop.exchange import Host
-from workshop.project import ROOT
+from tools.bench.exchange import CALLS, LAWS, Belt, Run, errors, exchange, reference, simulate
+from tools.exchange import Host
+from tools.project import ROOT
 
 PAGE = (ROOT / "docs" / "model-exchange.md").read_text(encoding="utf-8")
 ROW = re.compile(r"\| (\w+) \| ((?:co-simulation|model exchange), .*?) \| (\d+) \| (\S+) \| (\S+) \|")

@@ -10,7 +10,7 @@ import pytest
 from model_exchange.exchange_scenes import LARGEST, drawn, error, is_held
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.reference import Scene, start_values
+from tools.reference import Scene, start_values
 
 TOLERANCE = 1e-8
 ALLOWED = 300 * TOLERANCE  # over all steps; CasADi asks for one tolerance of states of very different sizes

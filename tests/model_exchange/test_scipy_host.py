@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from scipy.integrate import BDF, LSODA
 
-from workshop.project import ROOT
+from tools.project import ROOT
 
 PROGRAM = ROOT / "examples" / "model-exchange" / "pulled_mass.py"
 MASS, PULL, F_C, F = 2.0, 15.0, 55.0, 20e3

@@ -17,7 +17,7 @@ import frictioncontact as fc
 from frictioncontact.advice import command as advise_command
 from frictioncontact.command import main
 from frictioncontact.identification import command as identify_command
-from workshop.project import ROOT
+from tools.project import ROOT
 
 DRY = ROOT / "data" / "dry.csv"
 ROWS = {"V": [0.02, 0.04, 0.05], "vibration.V_1": [0.5] * 3, "F_t_mean": [31.0, 33.0, 0.0]}

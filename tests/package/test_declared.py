@@ -9,8 +9,8 @@ from importlib.metadata import version
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from workshop import description
-from workshop.project import ROOT
+from tools import description
+from tools.project import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
@@ -31,10 +31,10 @@ def wrong(declared: list[str], pinned: dict[str, str]) -> list[str]:
     ]
 
 
-def test_what_users_install_imports_nothing_of_the_workshop_or_the_tests() -> None:
+def test_what_users_install_imports_nothing_of_the_clone() -> None:
     paths = [*(ROOT / "frictioncontact").rglob("*.py")]
     texts = {path: path.read_text(encoding="utf-8") for path in paths}
-    foreign = re.compile(r"^\s*(from|import) (workshop|tests)\b", re.MULTILINE)
+    foreign = re.compile(r"^\s*(from|import) (examples|figures|tests|tools)\b", re.MULTILINE)
     assert len(texts) > 30 and [path for path, text in texts.items() if foreign.search(text)] == []
 
 

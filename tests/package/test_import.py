@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import frictioncontact as fc
-from workshop import description
+from tools import description
 
 HEAVY = ("numpy", "pandas", "scipy", "fmpy", "matplotlib", "rich", "dask", "pyarrow")
 

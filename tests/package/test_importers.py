@@ -21,8 +21,8 @@ from fmpy.validation import validate_fmu
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import OUTPUTS, SETTLED, FrictionFmu, simulate
 from frictioncontact.parameters import IDENTIFIED, TABLE_2, start_values
-from workshop.description import read
-from workshop.project import ROOT
+from tools.description import read
+from tools.project import ROOT
 
 
 def test_the_page_names_the_versions_that_are_tested() -> None:

@@ -22,7 +22,7 @@ from frictioncontact.__main__ import COMMANDS
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu, Session
 from frictioncontact.parameters import STIFFNESS_PRINTED
-from workshop.project import ROOT
+from tools.project import ROOT
 
 COULOMB = {"friction.model": "Coulomb", "vibration.V_1": 1.44}
 SOFT = {"vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}

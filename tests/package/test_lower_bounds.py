@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from workshop.project import ROOT
+from tools.project import ROOT
 
 PROGRAM = """
 import sys

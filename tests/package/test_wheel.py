@@ -19,7 +19,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from frictioncontact import resources
-from workshop.project import ROOT
+from tools.project import ROOT
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 
@@ -35,7 +35,7 @@ NOBODY = (
 
 @pytest.fixture(scope="module")
 def wheel(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from workshop.release.wheel import packed
+    from tools.release.wheel import packed
 
     folder = tmp_path_factory.mktemp("wheel")
     page = folder / "playground.html"
@@ -117,7 +117,7 @@ def test_what_is_inside(wheel: Path) -> None:
     files = {"FrictionContact.fmu", resources.batch_host().name, "playground.html", "data/table2.csv"}
     assert files | {"data/measurements/friction-record.csv.gz"} <= bundled
     assert "frictioncontact/py.typed" in names
-    assert not [name for name in names if name.startswith(("workshop", "tests"))]
+    assert not [name for name in names if name.startswith(("examples", "figures", "tests", "tools"))]
     for licence in ("LICENSE", "sundials-license.txt", "LICENSE-FrictionModels.txt"):
         assert any(name.endswith(licence) and "dist-info/licenses" in name for name in names), licence
     assert "License-Expression: BSD-3-Clause" in metadata

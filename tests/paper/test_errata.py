@@ -12,6 +12,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import i0
 
+from figures.report.paper import force_eq_25, mean_change
+from figures.report.regimes import coulomb_limit, scene, soft_limit
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import area, load, stiffness
 from frictioncontact.identification.api import fitted
@@ -33,9 +35,7 @@ from frictioncontact.parameters import (
     start_values,
 )
 from frictioncontact.periodic import periodic_mean
-from workshop.project import ROOT
-from workshop.report.paper import force_eq_25, mean_change
-from workshop.report.regimes import coulomb_limit, scene, soft_limit
+from tools.project import ROOT
 
 TEXT = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
 SURFACES = Surfaces()

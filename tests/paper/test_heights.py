@@ -10,7 +10,7 @@ import pytest
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import area, gaussian, height_integral, load, separation, stiffness
 from frictioncontact.parameters import E_FULL, E_REDUCED, Surfaces
-from workshop.project import ROOT
+from tools.project import ROOT
 
 TABLE_1 = Surfaces()
 

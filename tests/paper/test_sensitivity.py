@@ -10,10 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
-from workshop import reference
-from workshop.report import regimes
-from workshop.report.regimes import (
+from figures.report import regimes
+from figures.report.regimes import (
     CONSTANT,
     COULOMB,
     MOTOR,
@@ -25,6 +23,8 @@ from workshop.report.regimes import (
     sensitivity,
     soft_limit,
 )
+from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
+from tools import reference
 
 ALPHA, PHASE = 1.1 / 6.0, 2.0
 Mean = Callable[[dict], np.ndarray]

@@ -27,9 +27,9 @@ from physics.closed_forms import (
 from solver.test_tolerance import drawn, turned_back
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop import reference
-from workshop.project import ROOT
-from workshop.reference import CHOICES, LAWS_WITH_A_STATE, changed, scene_of
+from tools import reference
+from tools.project import ROOT
+from tools.reference import CHOICES, LAWS_WITH_A_STATE, changed, scene_of
 
 F, F_C, V_2, SIGMA = 2e4, 55.0, 0.8, 2.5e6
 OMEGA, D = 2 * math.pi * F, F_C / SIGMA

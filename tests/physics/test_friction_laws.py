@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, Value
-from workshop.project import ROOT
-from workshop.reference import changed, follow, scene_of
+from tools.project import ROOT
+from tools.reference import changed, follow, scene_of
 
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 

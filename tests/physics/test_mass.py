@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from frictioncontact.fmu import FrictionFmu, Value, simulate
-from workshop.bench.mass_inside import HELD, INSIDE, ROWS, coupled, error
-from workshop.reference import scene, step
+from tools.bench.mass_inside import HELD, INSIDE, ROWS, coupled, error
+from tools.reference import scene, step
 
 SIGMA, F_C, M = 6e6, 55.0, 1.0  # N/m, N, kg
 OMEGA, D = math.sqrt(SIGMA / M), F_C / SIGMA

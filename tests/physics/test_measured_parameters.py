@@ -11,8 +11,8 @@ import pytest
 import frictioncontact as fc
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
-from workshop.project import ROOT
-from workshop.validate import measurements, record
+from tools.project import ROOT
+from tools.validate import measurements, record
 
 PAGE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 LINES = re.findall(r"^    ((?:[\w.]+ [-\d.e]+ ?)+)$", re.sub(r"\\\n +", "", PAGE), re.MULTILINE)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from frictioncontact.fmu import FrictionFmu, Session, Value
-from workshop.reference import changed, follow, scene_of
+from tools.reference import changed, follow, scene_of
 
 MU = 0.176
 CONTACTS = ("Asperities", "Mindlin", "Constant")

@@ -11,8 +11,8 @@ from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import stiffness
 from frictioncontact.parameters import SEPARATION, Surfaces
 from frictioncontact.periodic import periodic_mean
-from workshop.project import ROOT
-from workshop.reference import scene_of, settled
+from tools.project import ROOT
+from tools.reference import scene_of, settled
 
 F, F_C = 20e3, 55.0
 PAGE = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())

@@ -11,10 +11,10 @@ from physics.closed_forms import coulomb_across, coulomb_along
 from scipy.optimize import brentq
 from scipy.special import i0
 
+from figures.pages.directions import AMPLITUDE, HEIGHT, mean, scene
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import COULOMB_FORCE
-from workshop.fmu_docs.directions import AMPLITUDE, HEIGHT, mean, scene
-from workshop.project import ROOT
+from tools.project import ROOT
 
 TEXT = (ROOT / "docs" / "three-directions.md").read_text(encoding="utf-8")
 PAGE = " ".join(TEXT.split())

@@ -9,8 +9,8 @@ import pytest
 from playground_page import Playground
 from playwright.sync_api import Browser
 
-from workshop.playground.page import page_text
-from workshop.presets import Preset, presets
+from tools.playground.page import page_text
+from tools.presets import Preset, presets
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 

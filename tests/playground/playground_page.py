@@ -9,8 +9,8 @@ import numpy as np
 from playwright.sync_api import Page
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.browser import watch
-from workshop.presets import Preset
+from tools.browser import watch
+from tools.presets import Preset
 
 # The page's worker computes curves and map of each scene shown: it starts where a test waits for them.
 HELD_WORKER = """{

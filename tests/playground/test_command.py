@@ -8,7 +8,7 @@ import pytest
 
 from frictioncontact.command import main
 from frictioncontact.errors import UserError
-from workshop.playground import command
+from tools.playground import command
 
 
 def test_it_writes_the_page(html: Path, tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ import pytest
 from playground_page import Playground, native_wave
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
-from workshop.description import description
-from workshop.playground.page import ASSETS, controls
+from tools.description import description
+from tools.playground.page import ASSETS, controls
 
 LIMIT = 1e-12  # of the largest force
 VARIABLES = {variable["name"]: variable for variable in description()["variables"]}

@@ -14,8 +14,8 @@ from lxml import etree
 from playground_page import Playground
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.description import description
-from workshop.presets import Preset
+from tools.description import description
+from tools.presets import Preset
 
 SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
 VARIABLES = {variable["name"]: variable for variable in description()["variables"]}

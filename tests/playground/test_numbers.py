@@ -10,7 +10,7 @@ from playground_page import Playground, native_wave
 from scipy.special import ellipk
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.presets import Preset
+from tools.presets import Preset
 
 LIMIT = 1e-12  # of the largest force: another C library rounds exp and cos otherwise
 TOLERANCE = 1e-6  # solver.tolerance, relative to F_C

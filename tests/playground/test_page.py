@@ -9,8 +9,8 @@ from axe_playwright_python.sync_playwright import Axe
 from playground_page import Playground
 from playwright.sync_api import Browser
 
-from workshop.browser import SIZES
-from workshop.playground.command import SCHEMES
+from tools.browser import SIZES
+from tools.playground.command import SCHEMES
 
 # A browser that compiles only beside the page, and knows no base64.
 OLDER = """delete Uint8Array.fromBase64;

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from workshop.packing.archive import CHECKSUMS
-from workshop.presets import presets
-from workshop.related import COLUMNS, FOLDER, Experiment, experiments, rows
+from tools.packing.archive import CHECKSUMS
+from tools.presets import presets
+from tools.related import COLUMNS, FOLDER, Experiment, experiments, rows
 
 IN_FMU = "extra/org.fmi-standard.fmi-ls-ref"
 SCHEMAS = Path(fmpy.__file__).parent

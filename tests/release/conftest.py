@@ -12,7 +12,7 @@ MISSING = "the release's packages are not installed: scripts/setup release"
 pytest.importorskip("lief", reason=MISSING)
 pytest.importorskip("ziglang", reason=MISSING)
 
-from workshop.release.command import compile_platform  # noqa: E402
+from tools.release.command import compile_platform  # noqa: E402
 
 
 @pytest.fixture(scope="session")

@@ -12,10 +12,10 @@ import lief
 import pytest
 
 from frictioncontact.errors import UserError
-from workshop.release import inspect as release_inspect
-from workshop.release.inspect import Library, check, fmi2_functions, inspect
-from workshop.release.targets import environment, zig
-from workshop.release.universal import universal
+from tools.release import inspect as release_inspect
+from tools.release.inspect import Library, check, fmi2_functions, inspect
+from tools.release.targets import environment, zig
+from tools.release.universal import universal
 
 
 def compiled(folder: Path, target: str, name: str) -> Path:

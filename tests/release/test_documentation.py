@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 import pytest
 from playwright.sync_api import Browser
 
-from workshop.fmu_docs import page as fmu_documentation
-from workshop.project import ROOT
+from tools.packing import documentation as fmu_documentation
+from tools.project import ROOT
 
 RELATED = "documentation/fmi-ls-ref.html"
 

@@ -16,7 +16,7 @@ import pytest
 
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
-from workshop.release.targets import build
+from tools.release.targets import build
 
 WINE = next(filter(None, map(shutil.which, ("wine64", "wine", "/usr/lib/wine/wine64"))), None)
 QEMU = next(filter(None, map(shutil.which, ("qemu-aarch64", "qemu-aarch64-static"))), None)

@@ -15,10 +15,10 @@ from rich.progress import Progress
 
 from frictioncontact.batch.runner import SIGNATURES
 from frictioncontact.errors import UserError
-from workshop import description
-from workshop.release import command as release
-from workshop.release import inspect as release_inspect
-from workshop.release import targets as release_targets
+from tools import description
+from tools.release import command as release
+from tools.release import inspect as release_inspect
+from tools.release import targets as release_targets
 
 QUIET = {"transient": True, "disable": True}
 
@@ -64,7 +64,7 @@ def test_the_wheel_and_the_page_are_the_released_files(released: Path, tmp_path:
 
 
 def test_it_is_one_of_ours(released: Path) -> None:
-    command = [sys.executable, "-m", "workshop", "workshop.release.command", "--check", str(released)]
+    command = [sys.executable, "-m", "tools", "tools.release.command", "--check", str(released)]
     said = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
     assert len(said) == 4 and all(line.startswith("ok  ") for line in said)
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from workshop.project import ROOT
-from workshop.release.targets import environment, zig
+from tools.project import ROOT
+from tools.release.targets import environment, zig
 
 PLATFORM = (
     "aarch64-darwin"  # whose libraries hold most besides code: a signature, and the place they were made in

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from frictioncontact.errors import UserError
-from workshop.release.verify import SUMS, verify, write_sums
+from tools.release.verify import SUMS, verify, write_sums
 
 Entries = dict[str, bytes]
 SOURCE = "sources/friction_contact.c"

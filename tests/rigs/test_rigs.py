@@ -11,7 +11,7 @@ import pytest
 from scipy.signal import butter, lfilter
 
 import frictioncontact as fc
-from workshop.reference import after, scene, settled, step
+from tools.reference import after, scene, settled, step
 
 V = np.geomspace(1e-3, 0.5, 12)  # m/s
 F, V_1 = 28.4e3, 0.2141  # Hz, m/s

@@ -11,12 +11,12 @@ from lxml import html
 from playwright.sync_api import Browser, Page, expect
 
 from frictioncontact.errors import UserError
-from workshop import description
-from workshop.browser import PATIENCE, SIZES, watch, window
-from workshop.project import ROOT
-from workshop.site.check import broken_links, complaints, pages
-from workshop.site.command import build
-from workshop.site.conf import MAINTAINERS
+from tools import description
+from tools.browser import PATIENCE, SIZES, watch, window
+from tools.project import ROOT
+from tools.site.check import broken_links, complaints, pages
+from tools.site.command import build
+from tools.site.conf import MAINTAINERS
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 pytestmark = pytest.mark.filterwarnings("ignore::sphinx.deprecation.RemovedInSphinx11Warning")  # of the theme

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.project import ROOT
+from tools.project import ROOT
 
 TABLE = Path(__file__).with_suffix(".csv")
 PERIOD = 1.0 / 20e3

@@ -10,7 +10,7 @@ from model_exchange.exchange_scenes import drawn, error
 from solver.test_tolerance import results
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.reference import changed, scene_of, step
+from tools.reference import changed, scene_of, step
 
 PERIOD, F_C = 1.0 / 20e3, 55.0
 CVODE: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 1e8, "solver.method": "cvode"}

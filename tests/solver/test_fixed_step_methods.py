@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, Value
-from workshop.reference import changed, rest, scene_of, step
+from tools.reference import changed, rest, scene_of, step
 
 ORDERS = {"explicitEuler": 1, "backwardEuler": 1, "trapezoid": 2, "rk4": 4}
 EXPLICIT = {"explicitEuler": 2.0, "rk4": 2.785293563405282}

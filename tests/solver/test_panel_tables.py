@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import roots_jacobi
 
-from workshop.constants.panel_tables import (
+from tools.constants.panel_tables import (
     HEADER,
     SAMPLES,
     STAGES,

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.reference import CHOICES, FIELDS, INPUTS, Scene, rest, scene, start_values, step
+from tools.reference import CHOICES, FIELDS, INPUTS, Scene, rest, scene, start_values, step
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 ROUNDING = 1e-11

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from workshop.build import build_targets
+from tools.build import build_targets
 
 PROGRAMS = sorted(path.stem for path in Path(__file__).parent.glob("test_*.c"))
 SKIPPED = 77
