@@ -16,7 +16,7 @@ typedef struct {
     int outputs_stale;    // a value was set since the outputs were computed
     int tolerance_is_set; // by the user, so the tolerance of the experiment does not apply
     int has_stop_time;
-    int no_hole;       // 0, so that sizeof tells of every new member (saved_state_bytes.c)
+    int no_hole;       // 0, so that sizeof tells of every new member (saved_state.c)
     double start_time; // s
     double stop_time;  // s, when has_stop_time
 } FcExperiment;

@@ -1,12 +1,17 @@
 // Fuzzes fmi2DeSerializeFMUstate, and what an instance does with a state that it accepts.
 //
 // First byte even: the rest is given as it is. Odd: the rest becomes the values of a state that is sealed with a
-// right header and checksum, so that the values themselves are tried.
+// right header and checksum, so that the values themselves are tried. They are the variables in the order of
+// modelDescription.xml, Real 8 bytes, Enumeration 4, and then what follows them in a state.
 //     refused     a message, no state, and the instance as before
 //     accepted    written again, the same bytes; the instance runs on, is saved and freed
+#include "fmi2/saved_state.h"
 #include "host.h"
 
-enum { HEADER_SIZE = 54, HASH_SIZE = 8 };
+enum {
+    AT_VARIABLES = offsetof(FcSavedState, friction),
+    AFTER_VARIABLES = AT_VARIABLES + sizeof(FcVariables)
+};
 
 static uint64_t fnv1a(const char* bytes, size_t size) {
     uint64_t hash = 14695981039346656037u;
@@ -16,15 +21,25 @@ static uint64_t fnv1a(const char* bytes, size_t size) {
     return hash;
 }
 
+// Moves up to room bytes from *values, which has *count, to a place of the state.
+static void take(char* place, size_t room, const uint8_t** values, size_t* count) {
+    const size_t size = *count < room ? *count : room;
+    memcpy(place, *values, size);
+    *values += size;
+    *count -= size;
+}
+
 // The state of an initialized instance with the values replaced, as far as there are bytes for them.
 static StateBytes sealed(fmi2Component c, const uint8_t* values, size_t count) {
     StateBytes state = state_of(c);
-    const size_t room = state.size - HEADER_SIZE - HASH_SIZE;
-    memcpy(state.bytes + HEADER_SIZE, values, count < room ? count : room);
-    const uint64_t hash = fnv1a(state.bytes, state.size - HASH_SIZE);
-    for (unsigned i = 0; i < HASH_SIZE; i++) {
-        state.bytes[state.size - HASH_SIZE + i] = (char)(unsigned char)(hash >> (8 * i));
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const size_t size = info->type == FC_TYPE_REAL ? sizeof(double) : sizeof(int);
+        take(state.bytes + AT_VARIABLES + info->offset, size, &values, &count);
     }
+    take(state.bytes + AFTER_VARIABLES, sizeof(FcSavedState) - AFTER_VARIABLES, &values, &count);
+    const uint64_t hash = fnv1a(state.bytes, sizeof(FcSavedState));
+    memcpy(state.bytes + sizeof(FcSavedState), &hash, sizeof hash);
     return state;
 }
 

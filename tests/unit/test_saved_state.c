@@ -1,4 +1,5 @@
 // The bytes of a saved state: every number of it is in them, and comes back; other bytes are refused.
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +7,7 @@
 #include "fmi2/saved_state.h"
 #include "fmi2/variables.h"
 
-enum { MOST_BYTES = 4096, LAYOUT = 6 };
+enum { MOST_BYTES = 4096, LAYOUT = 7 };
 
 static void silent(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
                    fmi2String category, fmi2String text, ...) {
@@ -17,7 +18,9 @@ static const fmi2CallbackFunctions callbacks = {silent, calloc, free, NULL, NULL
 
 // A state in which no two neighbours are equal and every number is one that it may have.
 static FcSavedState full_state(void) {
-    FcSavedState saved = {.mark = FC_SAVED_STATE_MARK};
+    FcSavedState saved;
+    memset(&saved, 0, sizeof saved);
+    saved.head = fc_saved_state_head();
     FcFrictionState* friction = &saved.friction;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
@@ -82,40 +85,62 @@ static void every_number_comes_back(fmi2Component c) {
     CHECK(fmi2FreeFMUstate(c, &read) == fmi2OK && read == NULL);
 }
 
-enum { AT_VERSION = 8, AT_SIZE = 12, AT_GUID = 16, AT_VALUES = 54 }; // bytes
+enum { AT_LAYOUT = 8, AT_SIZE = 12, AT_GUID = 16, AT_VALUES = 56 }; // bytes
 
-static void put(Bytes* bytes, size_t at, unsigned long long value, int size) {
-    for (int i = 0; i < size; i++) {
-        bytes->bytes[at + (size_t)i] = (char)(value >> (8 * i) & 0xffu);
-    }
+static void put_int(Bytes* bytes, size_t at, uint32_t value) {
+    memcpy(bytes->bytes + at, &value, sizeof value);
 }
 
 // FNV-1a of 64 bits over all bytes before the last eight, which it becomes.
 static void put_hash(Bytes* bytes) {
-    unsigned long long hash = 0xcbf29ce484222325ull;
+    uint64_t hash = 0xcbf29ce484222325u;
     for (size_t i = 0; i < bytes->size - 8; i++) {
         hash ^= (unsigned char)bytes->bytes[i];
-        hash *= 0x100000001b3ull;
+        hash *= 0x100000001b3u;
     }
-    put(bytes, bytes->size - 8, hash, 8);
+    memcpy(bytes->bytes + bytes->size - 8, &hash, sizeof hash);
 }
 
-// The head, the order of the bytes of a number, and the hash, written apart from the code.
+// The head, the values and the hash, written apart from the code.
 static void bytes_are_as_documented(fmi2Component c) {
     FcSavedState saved = full_state();
     const Bytes written = bytes_of(c, &saved);
-    Bytes expected = written;
+    Bytes expected = {.size = written.size};
     memcpy(expected.bytes, "FRICTION", 8);
-    put(&expected, AT_VERSION, LAYOUT, 4);
-    put(&expected, AT_SIZE, written.size, 4);
-    memcpy(expected.bytes + AT_GUID, fc_guid, AT_VALUES - AT_GUID);
-    unsigned long long bits;
-    memcpy(&bits, fc_variable_real(&saved.friction.variables, &fc_variables[0]), sizeof bits);
-    put(&expected, AT_VALUES, bits, 8);
+    put_int(&expected, AT_LAYOUT, LAYOUT);
+    put_int(&expected, AT_SIZE, (uint32_t)written.size);
+    memcpy(expected.bytes + AT_GUID, fc_guid, strlen(fc_guid));
+    memcpy(expected.bytes + AT_VALUES, &saved.friction, sizeof saved.friction);
+    memcpy(expected.bytes + AT_VALUES + sizeof saved.friction, &saved.experiment, sizeof saved.experiment);
     put_hash(&expected);
+    CHECK(AT_VALUES + sizeof saved.friction + sizeof saved.experiment + 8 == written.size);
     CHECK(memcmp(expected.bytes, written.bytes, written.size) == 0);
     char too_few[MOST_BYTES];
     CHECK(fmi2SerializeFMUstate(c, &saved, too_few, written.size - 1) == fmi2Error);
+}
+
+// The padding of a state in memory does not reach its bytes, and other bytes in its place are refused.
+static void padding_is_zero(fmi2Component c) {
+    FcSavedState clean = full_state(), dirty = clean;
+    unsigned char is_value[sizeof(FcVariables)] = {0};
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const size_t size = fc_variables[vr].type == FC_TYPE_REAL ? sizeof(double) : sizeof(int);
+        memset(is_value + fc_variables[vr].offset, 1, size);
+    }
+    const Bytes expected = bytes_of(c, &clean);
+    int count = 0;
+    for (size_t i = 0; i < sizeof is_value; i++) {
+        if (!is_value[i]) {
+            Bytes other = expected;
+            other.bytes[offsetof(FcSavedState, friction) + i] = 1;
+            put_hash(&other);
+            CHECK(!is_read(c, &other, other.size));
+            ((unsigned char*)&dirty.friction)[i] = 0xff;
+            count++;
+        }
+    }
+    const Bytes written = bytes_of(c, &dirty);
+    CHECK(count > 0 && memcmp(written.bytes, expected.bytes, expected.size) == 0);
 }
 
 // Another version, another size, and each byte damaged with the hash put right or not.
@@ -126,7 +151,7 @@ static void other_bytes_are_refused(fmi2Component c) {
     for (size_t given = 0; given < size + 20; given++) {
         CHECK(is_read(c, &good, given) == (given == size));
         Bytes other = good;
-        put(&other, AT_SIZE, given, 4);
+        put_int(&other, AT_SIZE, (uint32_t)given);
         put_hash(&other);
         CHECK(is_read(c, &other, size) == (given == size));
     }
@@ -155,6 +180,8 @@ static void impossible_numbers_are_refused(fmi2Component c) {
     }
     CHECK(!is_read_with(c, experiment + offsetof(FcExperiment, start_time), &infinite, sizeof infinite));
     CHECK(!is_read_with(c, experiment + offsetof(FcExperiment, stop_time), &infinite, sizeof infinite));
+    const int one = 1;
+    CHECK(!is_read_with(c, experiment + offsetof(FcExperiment, no_hole), &one, sizeof one));
     const struct {
         size_t at;
         int least;
@@ -196,6 +223,7 @@ int main(void) {
     if (c) {
         every_number_comes_back(c);
         bytes_are_as_documented(c);
+        padding_is_zero(c);
         other_bytes_are_refused(c);
         impossible_numbers_are_refused(c);
         impossible_modes_are_refused(c);
