@@ -8,6 +8,7 @@ from pathlib import Path
 from fmpy.model_description import ModelDescription
 
 from tools import description
+from tools.packing import initial_unknowns
 
 GUID_PLACEHOLDER = "{GUID}"
 DERIVATIVE = re.compile(r"der\((.*)\)")
@@ -33,6 +34,10 @@ def read(path: Path) -> ModelDescription:
             raise ValueError(f"{path}: valueReference of {variable.name} must be {reference}, its place")
         if variable.type == "Real" and variable.unit is None:
             raise ValueError(f"{path}: {variable.name} has no unit")
+    if initial_unknowns.renewed(xml.decode(), model) != xml.decode():
+        raise ValueError(
+            f"{path}: InitialUnknowns is old; python -m tools.packing.initial_unknowns writes it"
+        )
     model.guid = guid_of(xml)
     return model
 
