@@ -8,7 +8,7 @@ import numpy as np
 from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from tools.bench.driver import Bench, Job, Outcome
-from tools.reference import CHOICES, Scene, changed, follow, rest, scene_of, step
+from tools.reference import CHOICES, NAMES, Scene, changed, follow, rest, scene_of, step
 
 SIGMAS = (6e4, 6e6, 6e8, 6e10, 6e12)  # N/m at 14 um
 # No whole number of periods, so that what cancels over a period, and luck at one phase, do not count.
@@ -38,10 +38,11 @@ class Case:
     def scene_at(self, k: int, start: float) -> Scene:
         """The scene of step k, its inputs counted from the step's own start."""
         scene = changed(scene_of(self.start_values), start=start + k * self.step, h=self.step)
-        now = {name: float(samples[k]) for name, samples in self.inputs.items()}
+        samples = {NAMES[name]: values for name, values in self.inputs.items()}
+        now = {name: float(v[k]) for name, v in samples.items()}
         rates = {}
         if self.linear:
-            rates = {f"{name}_rate": float(v[k + 1] - v[k]) / self.step for name, v in self.inputs.items()}
+            rates = {f"{name}_rate": float(v[k + 1] - v[k]) / self.step for name, v in samples.items()}
         return changed(scene, **now, **rates)
 
     @property

@@ -21,6 +21,11 @@ METHODS = {  # that the chart shows: label and colour
     "Radau 13": ("order 13", style.RED),
     "plain CVODE": ("CVODE", style.GREEN),
 }
+MASS_METHODS = {  # of a mass: label and colour
+    "collocation": ("panels", style.BLUE),
+    "cvode": ("CVODE in the FMU", style.GREEN),
+    MODEL_EXCHANGE: ("FMPy's CVODE, model exchange", style.ORANGE),
+}
 BEHAVIOUR = {
     "monotone": style.BLUE,
     "stable": style.SKY,
@@ -53,6 +58,27 @@ def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Pat
     figure.supylabel("CPU time for 50 µs [µs]", fontsize=10)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return style.save_both(figure, folder, "work-precision")
+
+
+def mass_work(points: Sequence[Any], titles: Mapping[str, str], path: Path) -> None:
+    """A panel a scene; a point's cpu is over simulated time. An error of rounding is drawn at its size."""
+    rows = -(-len(titles) // 2)
+    figure, axes = style.subplots(rows, 2, size=(6.4, 2.6 * rows + 0.9), sharex=True, sharey=True)
+    table = pd.DataFrame(points).query("failure == ''")
+    for panel, (name, title) in zip(axes.flat, titles.items(), strict=True):
+        panel.axhline(1.0, color=style.GREY, lw=0.9, ls="--")
+        for method, (label, colour) in MASS_METHODS.items():
+            own = table[(table.case == name) & (table.method == method)]
+            errors = own[["error_F_t", "error_F_t_mean"]].max(axis=1).clip(SMALLEST_ERROR)
+            panel.loglog(errors, own.cpu, "o-", color=colour, ms=3, label=label)
+        panel.set(xlim=(3.0, SMALLEST_ERROR / 3), xticks=[1.0, 1e-4, 1e-8, 1e-12, 1e-16])
+        panel.set_title(title.replace(", ", "\n", 1))
+    for panel in axes[-1]:
+        panel.set_xlabel(r"error of $F_t$ and its mean, over $F_C$")
+    style.note(axes.flat[0], "real time", 0.72, 0.6)
+    figure.supylabel("CPU time over simulated time", fontsize=10)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    style.save(figure, path)
 
 
 def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:

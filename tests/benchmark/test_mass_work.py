@@ -1,0 +1,26 @@
+"""The work of a mass: every way comes to the reference, and panels take fewer evaluations than CVODE."""
+
+from __future__ import annotations
+
+import pytest
+
+from tools.bench.cases import Case, expected
+from tools.bench.driver import Bench
+from tools.bench.exchange import MODEL_EXCHANGE
+from tools.bench.mass_work import CVODE, PANELS, Point, drawn, graded, solved
+
+# Largest error of a step at the tolerance 1e-8; only that of the panels is promised. Those of a run add up.
+LARGEST = {PANELS: 1e-8, CVODE: 1e-6, MODEL_EXCHANGE: 1e-3}
+
+
+@pytest.mark.parametrize("scene", drawn(), ids=lambda scene: scene.name)
+def test_every_way_solves_the_scenes_of_the_picture(bench: Bench, scene: Case) -> None:
+    truth = {0.0: expected(scene, 0.0)}
+
+    def point(method: str) -> Point:
+        return graded(scene, truth, method, 1e-8, lambda _: solved(bench, scene, method, 1e-8))
+
+    points = {method: point(method) for method in LARGEST}
+    for method, found in points.items():
+        assert not found.failure and found.error <= scene.count * LARGEST[method], found
+    assert points[PANELS].evaluations < points[CVODE].evaluations
