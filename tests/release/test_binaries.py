@@ -14,8 +14,8 @@ import pytest
 from frictioncontact.errors import UserError
 from tools.release import inspect as release_inspect
 from tools.release.inspect import Library, check, fmi2_functions, inspect
-from tools.release.targets import environment, zig
 from tools.release.universal import universal
+from tools.zig import environment, zig
 
 
 def compiled(folder: Path, target: str, name: str) -> Path:

@@ -15,7 +15,7 @@ from rich.progress import Progress
 
 from frictioncontact.batch.runner import SIGNATURES
 from frictioncontact.errors import UserError
-from tools import description
+from tools import description, zig
 from tools.release import command as release
 from tools.release import inspect as release_inspect
 from tools.release import targets as release_targets
@@ -109,7 +109,7 @@ def test_a_refusal_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
 
     monkeypatch.setattr(release_targets, "build_targets", broken)
     assert refuse(tmp_path / "FrictionContact.fmu") == "the build fails: contact.c:1: error: surprise"
-    monkeypatch.setattr(release_targets.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(zig.importlib.util, "find_spec", lambda name: None)
     assert "cross compiler is missing" in refuse(tmp_path / "new" / "FrictionContact.fmu")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 

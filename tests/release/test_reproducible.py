@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tools.project import ROOT
-from tools.release.targets import environment, zig
+from tools.zig import environment, zig
 
 PLATFORM = (
     "aarch64-darwin"  # whose libraries hold most besides code: a signature, and the place they were made in

@@ -26,7 +26,7 @@ from tools.description import XML, description
 from tools.packing import model_description, variable_table
 from tools.presets import presets
 from tools.project import ROOT
-from tools.release.targets import environment, zig
+from tools.zig import environment, zig
 
 ASSETS = Path(__file__).with_name("assets")
 PLACE = re.compile(r"/\*\[([\w.]+)\]\*/|<!--\[(\w+)\]-->")

@@ -27,10 +27,11 @@ from tools.playground.page import page_text
 from tools.project import ROOT
 from tools.release import inspect as release_inspect
 from tools.release.build_hook import PAGE
-from tools.release.targets import PLATFORMS, build, zig
+from tools.release.targets import PLATFORMS, build
 from tools.release.universal import universal
 from tools.release.verify import SUMS, verify, write_sums
 from tools.release.wheel import wheels
+from tools.zig import zig
 
 QUICK = ("linux64", "aarch64-darwin")  # the compiler's two ways: with the linker's optimization, and without
 SUNDIALS = ROOT / "build" / "sundials-source"

@@ -1,7 +1,5 @@
 """The platforms of a release; cmake/zig.cmake holds how each is compiled, CMakeLists.txt what."""
 
-import importlib.util
-import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +9,7 @@ from rich.progress import Progress
 
 from frictioncontact.errors import UserError
 from tools.build import build_targets
-from tools.project import ROOT
+from tools.zig import environment, zig
 
 
 @dataclass(frozen=True)
@@ -30,24 +28,6 @@ PLATFORMS = {
     "darwin64": Platform(".dylib", "X86_64", "macosx_10_15_x86_64", (10, 15)),
     "aarch64-darwin": Platform(".dylib", "ARM64", "macosx_11_0_arm64", (11, 0)),
 }
-
-
-def zig() -> Path:
-    """The zig of the ziglang package."""
-    found = importlib.util.find_spec("ziglang")
-    if found is None or not found.submodule_search_locations:
-        raise UserError(
-            "the cross compiler is missing: the Python package ziglang of requirements-release.txt is not "
-            "installed; scripts/setup release installs it"
-        )
-    return Path(found.submodule_search_locations[0]) / "zig"
-
-
-def environment() -> dict[str, str]:
-    """This process's, with the place of what zig has compiled; lines of two compilers do not mix."""
-    cache = str(ROOT / "build" / "zig-cache")
-    zig_cache = {"ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache}
-    return {**zig_cache, "MAKEFLAGS": "--output-sync=target", **os.environ}
 
 
 def build(platform: str, targets: Sequence[str], progress: Progress | None = None) -> Path:
