@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from fmpy import fmi2
 from fmpy.fmi1 import FMICallException
-from scipy.integrate import BDF, OdeSolver
+from scipy.integrate import BDF, DenseOutput, OdeSolver
 
 from frictioncontact.fmu import Closing, FrictionError, FrictionFmu, Loaded, logging_callbacks, opened
 from frictioncontact.values import Value, real
@@ -65,6 +65,8 @@ class ModelExchange(Closing):
         self._tolerance = real(tolerance, "tolerance")
         self._own_nominals = np.ones(len(self.own)) if nominals is None else np.array(nominals, float)
         self._outputs, self._buffer = self._references(outputs), (c_double * STATES)()
+        self._solver: OdeSolver | None = None
+        self._ahead: tuple[float, np.ndarray, DenseOutput, bool] | None = None  # a step not yet completed
         self.messages: list[str] = []
         self._callbacks = logging_callbacks(self.messages)
         self._model: Any = self.Model(self.fmu.description, self.fmu.directory, self.fmu.library)
@@ -121,36 +123,58 @@ class ModelExchange(Closing):
         return [indicator > 0.0 for indicator in self._buffer]
 
     def advance(self, stop: float) -> None:
-        """To the time stop [s], by way of the events. An event is where an indicator has its new sign."""
-        while self.time < stop:
-            self._call(self._to_an_event, min(stop, self._next_event))
+        """To the time stop [s], by way of the events. An event is where an indicator has its new sign.
 
-    def _to_an_event(self, end: float) -> None:
+        The integrator steps past stop, and what it found there serves the next call: call `event` where a
+        rule of inputs or rates changes.
+        """
+        while self.time < stop:
+            self._call(self._onward, stop)
+
+    def _onward(self, stop: float) -> None:
+        """To stop, or to the end of the integrator's step and through the event there."""
+        if self._ahead is None:
+            self._ahead = self._step()
+        end, y, course, event = self._ahead
+        if stop < end:
+            self._put(stop, course(stop))
+            return
+        self._ahead = None
+        self._put(end, y)
+        event |= bool(self._model.completedIntegratorStep()[0])
+        if event or end >= self._next_event:
+            self.event()
+
+    def _step(self) -> tuple[float, np.ndarray, DenseOutput, bool]:
+        """A step of the integrator, up to an event in it: end, states there and between, whether an event."""
+        if self._solver is None:
+            self._solver = self._new_solver()
+        solver = self._solver
+        if message := solver.step():
+            raise FrictionError(f"the integrator stopped at {self.time:g} s: {message}")
+        low, t, y, course = solver.t_old, solver.t, solver.y, solver.dense_output()
+        self.longest = max(self.longest, t - low)
+        event = self._signs(t, y) != self._before
+        if event:
+            while low < (middle := 0.5 * (low + t)) < t:
+                before = self._signs(middle, course(middle)) == self._before
+                low, t = (middle, t) if before else (low, middle)
+            y = course(t)
+        return t, y, course, event
+
+    def _new_solver(self) -> OdeSolver:
+        """From here to the next event that the FMU announces."""
         self._model.getContinuousStates(self._buffer, STATES)
         y = np.array([*self._buffer, *self.own])
         self._model.getNominalsOfContinuousStates(self._buffer, STATES)
         atol = self._tolerance * np.array([*self._buffer, *self._own_nominals])
-        solver = self._method(self._rates, self.time, y, end, rtol=self._tolerance, atol=atol)
-        before, event = self._signs(self.time, y), False
-        while solver.status == "running" and not event:
-            if message := solver.step():
-                raise FrictionError(f"the integrator stopped at {self.time:g} s: {message}")
-            t, y, low = solver.t, solver.y, solver.t_old
-            self.longest = max(self.longest, t - low)
-            event = self._signs(t, y) != before
-            if event:
-                course = solver.dense_output()
-                while low < (middle := 0.5 * (low + t)) < t:
-                    low, t = (middle, t) if self._signs(middle, course(middle)) == before else (low, middle)
-                y = course(t)
-            self._put(t, y)
-            event |= bool(self._model.completedIntegratorStep()[0])
-        if event or self.time >= self._next_event:
-            self.event()
+        self._before = self._signs(self.time, y)
+        return self._method(self._rates, self.time, y, self._next_event, rtol=self._tolerance, atol=atol)
 
     def event(self) -> None:
         """An event now, as after an input that jumps."""
         self.events += 1
+        self._solver = self._ahead = None
         self._model.enterEventMode()
         self._set_inputs()
         self._update()

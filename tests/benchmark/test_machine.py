@@ -40,7 +40,7 @@ def test_the_page_says_what_an_integrator_and_a_law_err_by(
 ) -> None:
     """With vibration, of which the first part is run, the integrator's error grows to the page's."""
     ((still,), (vibrating,)) = (said(vibrates, machine.MODEL_EXCHANGE) for vibrates in (False, True))
-    assert 100.0 * machine.by_exchange(fmu, False, 1e-6) == pytest.approx(still, rel=0.5)  # CVODE's steps
+    assert 100.0 * machine.by_exchange(fmu, False, 1e-6) == pytest.approx(still, rel=0.5)  # where steps fall
     (stated,) = said(True, machine.OWN)
     assert 100.0 * machine.by_law() == pytest.approx(stated, rel=0.06)
     monkeypatch.setattr(machine, "END", 0.005)

@@ -7,8 +7,8 @@ from typing import Any
 
 from solver.test_tolerance import drawn as of_any_stiffness
 
+from frictioncontact import ModelExchange
 from frictioncontact.fmu import FrictionFmu
-from tools.exchange import Host
 from tools.reference import CHOICES, FIELDS, INPUTS, LAWS_WITH_A_STATE, Scene, start_values, step
 
 OUTPUTS = 40  # points at which the host ends a step of its own
@@ -47,8 +47,8 @@ def run(now: Scene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:
     def inputs(t: float, own: Any) -> dict[str, float]:
         return {FIELDS[n]: getattr(now, n) + getattr(now, f"{n}_rate") * t for n in INPUTS}
 
-    with Host(fmu, start_values(now), inputs, tolerance=tolerance, longest_step=now.h / 20) as host:
+    with ModelExchange(start_values(now), inputs=inputs, tolerance=tolerance, fmu=fmu) as host:
         for k in range(1, OUTPUTS + 1):
             host.advance(now.h * k / OUTPUTS)
         host.event()
-        return dict(zip(LARGEST, host.get(*LARGEST), strict=True))
+        return {name: host.get(name) for name in LARGEST}

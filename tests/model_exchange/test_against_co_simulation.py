@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from frictioncontact import ModelExchange
 from frictioncontact.fmu import FrictionFmu, Value
-from tools.exchange import Host
 
 PERIOD = 5e-5  # s
 
@@ -49,7 +49,7 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
     }
     start = stiff(fmu, start, 20e6)
     start["delta_0"], start["delta_y_0"] = rng.uniform(-2, 2, 2) * [1.0, planar] * 55.0 / 20e6
-    with fmu.session(start) as session, Host(fmu, start, lambda t, own: now, tolerance=1e-8) as host:
+    with fmu.session(start) as session, ModelExchange(start, inputs=lambda t, own: now, fmu=fmu) as host:
         session.step(0.0)
         heats = [session.get("Q_f")]
         for _ in range(3):
@@ -58,7 +58,7 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
                 session.set(name, value)
             session.step(0.0)
             host.event()
-            delta, delta_y, Q_f = host.get("delta", "delta_y", "Q_f")
+            delta, delta_y, Q_f = map(host.get, ("delta", "delta_y", "Q_f"))
             assert [delta, delta_y] == pytest.approx(session.read(("delta", "delta_y")), rel=1e-12)
             assert Q_f == pytest.approx(session.get("Q_f"), rel=1e-11)
             heats.append(Q_f)
@@ -82,12 +82,11 @@ def test_inputs_whose_speed_changes_at_an_event(fmu: FrictionFmu, load: float, r
     now = [100.0, -50e3, 0.0]
     with (
         fmu.session(start) as session,
-        Host(
-            fmu,
+        ModelExchange(
             start,
-            lambda t, own: {"V": -0.002, "load": now[0] + now[1] * (t - now[2])},
+            inputs=lambda t, own: {"V": -0.002, "load": now[0] + now[1] * (t - now[2])},
             tolerance=1e-8,
-            longest_step=1e-3,
+            fmu=fmu,
         ) as host,
     ):
         session.set_rates(load=-50e3)
@@ -100,7 +99,7 @@ def test_inputs_whose_speed_changes_at_an_event(fmu: FrictionFmu, load: float, r
             session.set_rates(load=rate)
             session.step(time - session.time)
             host.advance(time)
-            assert host.get("F_t")[0] == pytest.approx(session.get("F_t"), abs=1e-5 * load)
+            assert host.get("F_t") == pytest.approx(session.get("F_t"), abs=1e-5 * load)
 
 
 @pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
@@ -125,10 +124,10 @@ def test_no_slip_is_stepped_over(fmu: FrictionFmu, planar: bool) -> None:
         stop = rng.uniform(0.6, 1.4) * PERIOD
         with (
             fmu.session({**start, "solver.tolerance": 1e-8}) as session,
-            Host(fmu, start, lambda t, own: {}, tolerance=1e-8 if planar else 1e-6) as host,
+            ModelExchange(start, tolerance=1e-8 if planar else 1e-6, fmu=fmu) as host,
         ):
             session.step(stop)
             host.advance(stop)
             host.event()
-            worst.append(abs(host.get("Q_f")[0] - session.get("Q_f")) / (55.0 * 4.0 * amplitude))
+            worst.append(abs(host.get("Q_f") - session.get("Q_f")) / (55.0 * 4.0 * amplitude))
     assert max(worst) < (1e-4 if planar else 5e-5)

@@ -1,4 +1,4 @@
-"""Both interfaces against the reference: model exchange by CVODE, and co-simulation."""
+"""Both interfaces against the reference: model exchange by scipy's BDF, and co-simulation."""
 
 from __future__ import annotations
 

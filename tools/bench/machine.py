@@ -15,11 +15,10 @@ from functools import cache
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from frictioncontact import friction_law
+from frictioncontact import ModelExchange, friction_law
 from frictioncontact.advice.stuck_mass import GAUSS_SEIDEL, JACOBI, LINEAR, least_damping
 from frictioncontact.fmu import FrictionFmu, Value
 from tools.build import build_fmu
-from tools.exchange import Host
 
 M, SIGMA, F_C, F, V_1 = 1.1, 7.755e6, 2.93, 26e3, 0.0572  # kg, N/m, N, Hz, m/s
 PERIOD, END = 1.0 / F, 0.1  # s
@@ -106,9 +105,15 @@ def error(times: np.ndarray, speeds: Sequence[float], vibrates: bool) -> float:
 def by_exchange(fmu: FrictionFmu, vibrates: bool, tolerance: float) -> float:
     """The error of an integrator that takes mass and bristle together."""
     times, speeds = np.linspace(0.0, END, 501)[1:], []
-    options = {"own": (0.0,), "own_nominals": (0.01,), "tolerance": tolerance}
-    options["own_rates"] = lambda t, own, F_t: ((pull(t, vibrates) - F_t) / M,)
-    with Host(fmu, scene(vibrates), lambda t, own: {"V": own[0]}, **options) as host:
+    with ModelExchange(
+        scene(vibrates),
+        own=(0.0,),
+        inputs=lambda t, own: {"V": own[0]},
+        rates=lambda t, own, F_t: ((pull(t, vibrates) - F_t) / M,),
+        nominals=(0.01,),
+        tolerance=tolerance,
+        fmu=fmu,
+    ) as host:
         for t in times:
             host.advance(t)
             speeds.append(host.own[0])
