@@ -24,7 +24,7 @@ METHODS = {  # that the chart shows: label and colour
 MASS_METHODS = {  # of a mass: label and colour
     "collocation": ("panels", style.BLUE),
     "cvode": ("CVODE in the FMU", style.GREEN),
-    MODEL_EXCHANGE: ("FMPy's CVODE, model exchange", style.ORANGE),
+    MODEL_EXCHANGE: ("scipy's BDF, model exchange", style.ORANGE),
 }
 BEHAVIOUR = {
     "monotone": style.BLUE,

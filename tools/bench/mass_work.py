@@ -5,7 +5,7 @@
     m v' = body.F - F_t
 
 The FMU solves it by its panels (solver.method = collocation) and by CVODE (solver.method = cvode), both
-driven from C. Beside them stands CVODE of FMPy on model exchange, with v as the state of a host in Python.
+driven from C. Beside them stands BDF of scipy on model exchange, with v as the state of a host in Python.
 Work is CPU time over simulated time: 1 is real time. An error is the larger of those of F_t and F_t_mean,
 over F_C. What is right is hunt/reference.c.
 """
@@ -19,6 +19,7 @@ import numpy as np
 
 from frictioncontact.command import progress_bar
 from frictioncontact.errors import UserError
+from frictioncontact.exchange import ModelExchange
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import PERIOD
 from tools.bench import figures
@@ -26,7 +27,6 @@ from tools.bench.cases import Case, expected
 from tools.bench.driver import Bench, Outcome, failed, open_bench
 from tools.bench.exchange import MODEL_EXCHANGE
 from tools.bench.work_precision import Point, graded
-from tools.exchange import Host
 from tools.project import ROOT
 
 PICTURE = ROOT / "docs" / "pictures" / "mass-work.png"
@@ -90,15 +90,16 @@ def exchanged(fmu: FrictionFmu, scene: Case, tolerance: float) -> Outcome:
         return ((np.interp(t, times, F) - F_t) / m,)
 
     v, F_t = np.zeros(scene.count + 1), np.zeros(scene.count)
-    of_v = {"own": (0.0,), "own_rates": rates, "own_nominals": (scene.F_C * scene.step / m,)}
+    of_v = {"own": (0.0,), "rates": rates, "nominals": (scene.F_C * scene.step / m,)}
+    of_v |= {"inputs": lambda t, own: {"V": own[0]}, "tolerance": tolerance}
     try:
-        with Host(fmu, values, lambda t, own: {"V": own[0]}, tolerance=tolerance, **of_v) as host:
+        with ModelExchange(values, fmu=fmu, **of_v) as host:
             begin = time.process_time()
             for k, stop in enumerate(times[1:]):
                 host.advance(stop)
-                v[k + 1], F_t[k] = host.own[0], host.get("F_t")[0]
+                v[k + 1], F_t[k] = host.own[0], host.get("F_t")
             cpu = time.process_time() - begin
-            evaluations = host.get("solver.evaluations")[0]
+            evaluations = host.get("solver.evaluations")
     except (UserError, RuntimeError) as error:
         return failed(str(error))
     mean = 0.5 * (F[1:] + F[:-1]) - m * np.diff(v) / scene.step
