@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { LEAST_RUNS = 3, MOST_RUNS = 1001 };
+enum { MIN_RUNS = 3, MAX_RUNS = 1001 };
 
 double cpu_seconds(void) {
     struct timespec now;
@@ -119,12 +119,12 @@ static void print_rows(const Job* job, const Run* run) {
 }
 
 void job_measure(const Job* job, RunJob run_job) {
-    static double cpu[MOST_RUNS];
+    static double cpu[MAX_RUNS];
     Run run = {.failed_at = -1, .allocations = -1};
     run.row = allocate((size_t)job->count * (size_t)job->outputs, sizeof *run.row);
     int runs = 0;
     double spent = 0.0;
-    while (runs < LEAST_RUNS || (spent < job->budget && runs < MOST_RUNS)) {
+    while (runs < MIN_RUNS || (spent < job->budget && runs < MAX_RUNS)) {
         run_job(job, &run);
         if (run.failed_at >= 0) {
             printf("failed %d %s\n", run.failed_at, run.reason);

@@ -15,7 +15,7 @@
 
 #include "plain_equation.h"
 
-static const long MOST_STEPS = 1000000; // of CVODE in a communication step
+static const long MAX_STEPS = 1000000; // of CVODE in a communication step
 
 typedef struct {
     Plain plain;
@@ -65,7 +65,7 @@ static int open_solver(Cvode* s, const Job* job, Run* run) {
            CVodeSVtolerances(s->integrator, p[PLAIN_TOLERANCE], s->tolerance) == CV_SUCCESS &&
            CVodeSetUserData(s->integrator, &s->plain) == CV_SUCCESS &&
            CVodeSetErrHandlerFn(s->integrator, keep_reason, &s->plain) == CV_SUCCESS &&
-           CVodeSetMaxNumSteps(s->integrator, MOST_STEPS) == CV_SUCCESS &&
+           CVodeSetMaxNumSteps(s->integrator, MAX_STEPS) == CV_SUCCESS &&
            CVodeSetLinearSolver(s->integrator, s->linear_solver, s->matrix) == CVLS_SUCCESS;
 }
 

@@ -18,7 +18,7 @@ static double A[STAGES][STAGES];
 static double eigenvalue;
 static double dd[STAGES];
 static const double SAFETY = 0.9, LARGEST_GROWTH = 8.0, LARGEST_CUT = 5.0;
-static const long MOST_STEPS = 10000000; // in a communication step
+static const long MAX_STEPS = 10000000; // in a communication step
 
 typedef struct {
     Plain plain;
@@ -192,7 +192,7 @@ static int advance(Radau* r, double end, int transient) {
     r->accepted_h = 0.0;
     const double usual = transient ? r->first_h : r->h;
     r->h = usual > 0.0 ? usual : 1e-3 * (end - r->t);
-    for (long n = 0; n < MOST_STEPS; n++) {
+    for (long n = 0; n < MAX_STEPS; n++) {
         const int is_last = r->t + 1.0001 * r->h >= end;
         const double h = is_last ? end - r->t : r->h;
         const Stages z = stages(r, h);

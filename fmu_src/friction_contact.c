@@ -12,11 +12,11 @@
 
 // The number of vibration periods since time 0 beyond which the phase is refused. Chosen empirically:
 // neighbouring numbers of time are then 1/128 to 1/64 of a period apart. Twice the number would double this.
-static const double MOST_CYCLES = 0x1p46;
+static const double MAX_CYCLES = 0x1p46;
 
 // The largest factor by which E may change in a step. Chosen empirically: the tests cover it; a larger one is
 // refused.
-static const double MOST_CHANGE_OF_E = 10.0;
+static const double MAX_CHANGE_OF_E = 10.0;
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
     return fc_message_set(
@@ -50,7 +50,7 @@ static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E
 // (fc_scene_piece).
 static double load_after(FcLinearInput load, double h) {
     const double after = fc_input_after(load, h);
-    return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fc_least(after, 0.0) : after;
+    return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fc_min(after, 0.0) : after;
 }
 
 // V or V_y after a step: 0 within the rounding of its rate and of the product, so that a ramp to 0 ends there.
@@ -158,7 +158,7 @@ static bool fail_separation(const FcScene* scene, double h, FcMessage* message) 
     const FcDrive* drive = &scene->drive;
     const double a_d = drive->vibration.a_d;
     if (scene->contact->input == FC_CONTACT_LOAD) {
-        return fail_load(&scene->at_E, fc_most(drive->load.value, fc_drive_load(drive, h)), a_d, message);
+        return fail_load(&scene->at_E, fc_max(drive->load.value, fc_drive_load(drive, h)), a_d, message);
     }
     if (drive->d.rate == 0.0) {
         return fc_message_set(
@@ -227,24 +227,24 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     const FcDrive* drive = &scene->drive;
     const double E = drive->E.value;
     const double end = fc_drive_E(drive, h);
-    if (!(fc_least(E, end) > 0.0)) {
+    if (!(fc_min(E, end) > 0.0)) {
         return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa",
                               E, end);
     }
-    if (fc_most(E, end) > MOST_CHANGE_OF_E * fc_least(E, end)) {
+    if (fc_max(E, end) > MAX_CHANGE_OF_E * fc_min(E, end)) {
         return fc_message_set(
             message,
             "E moves from %.9g Pa to %.9g Pa in the step: it may change by at most a factor of %g, "
             "up to %.9g Pa or down to %.9g Pa",
-            E, end, MOST_CHANGE_OF_E, MOST_CHANGE_OF_E * E, E / MOST_CHANGE_OF_E);
+            E, end, MAX_CHANGE_OF_E, MAX_CHANGE_OF_E * E, E / MAX_CHANGE_OF_E);
     }
     if (!isfinite(scene->at_E.area_0) || !isfinite(scene->at_E.load_0) ||
         !isfinite(scene->at_E.stiffness_0)) {
-        return fail_stiffness(message, drive->d.value, fc_most(E, end));
+        return fail_stiffness(message, drive->d.value, fc_max(E, end));
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
     const bool stays_open = scene->is_open && !scene->floats;
-    if (by_load && (stays_open || !(fc_most(drive->load.value, fc_drive_load(drive, h)) > 0.0))) {
+    if (by_load && (stays_open || !(fc_max(drive->load.value, fc_drive_load(drive, h)) > 0.0))) {
         return true; // open throughout
     }
     const double d = fc_scene_smallest_d(scene, h);
@@ -252,7 +252,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         return fail_separation(scene, h, message);
     }
     if (!isfinite(fc_scene_largest_stiffness(scene, h))) {
-        return fail_stiffness(message, d, fc_most(E, end));
+        return fail_stiffness(message, d, fc_max(E, end));
     }
     if (!isfinite(fc_scene_mean_limit(scene, 0.0)) || !isfinite(fc_scene_mean_limit(scene, h))) {
         return fc_message_set(
@@ -359,14 +359,14 @@ static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand st
 // The time t [s] must determine the phase of the vibration.
 static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
     const double f = drive->vibration.f;
-    if (!fc_drive_vibrates(drive) || fabs(t) * f <= MOST_CYCLES) {
+    if (!fc_drive_vibrates(drive) || fabs(t) * f <= MAX_CYCLES) {
         return true;
     }
     return fc_message_set(
         message,
         "time = %.9g s is too large for vibration.f = %.9g Hz: beyond %.9g s its neighbouring "
         "numbers are more than 1/128 of a period apart",
-        t, f, MOST_CYCLES / f);
+        t, f, MAX_CYCLES / f);
 }
 
 FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
@@ -454,20 +454,20 @@ static double force_of_bristle(const FcScene* scene, double h, FcBristle from) {
     const FcFriction* friction = scene->friction;
     double limit = fc_scene_mean_limit(scene, 0.0);
     if (fc_scene_has_pieces(scene)) {
-        limit = fc_most(limit, fc_scene_mean_limit(scene, h));
+        limit = fc_max(limit, fc_scene_mean_limit(scene, h));
     }
     const double delta = fc_size(from);
     const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);
-    return fc_most(fc_most(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
+    return fc_max(fc_max(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
 }
 
 // The least limit of the step. If the contact opens or closes in the step, the mean limit at its closed end.
 static double least_limit(const FcScene* scene, double h) {
-    const double at_ends = fc_least(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+    const double at_ends = fc_min(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
     return at_ends > 0.0 ? fc_scene_smallest_limit(scene, h)
-                         : fc_most(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+                         : fc_max(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
 }
 
 // solver.tolerance is relative to the largest of the forces of bristle, damping and viscosity. An error of
@@ -481,13 +481,13 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
     const double damping = sigma_1 * speed;
     const double bristle = force_of_bristle(scene, h, from);
     const double limit = damping != 0.0 ? least_limit(scene, h) : 0.0;
-    const double largest = fc_most(bristle, damping + sigma_2 * speed);
+    const double largest = fc_max(bristle, damping + sigma_2 * speed);
     double force = largest;
     if (limit > 0.0) {
-        force = fc_most(fc_force_beside_damping(largest, damping, limit),
+        force = fc_max(fc_force_beside_damping(largest, damping, limit),
                         bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
     }
-    return (FcSolverOptions){.tolerance = fc_most(SMALLEST_TOLERANCE, v->solver.tolerance),
+    return (FcSolverOptions){.tolerance = fc_max(SMALLEST_TOLERANCE, v->solver.tolerance),
                              .force = force,
                              .largest = largest,
                              .damping = damping,
@@ -538,13 +538,13 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_reach(&scene, first));
     const bool is_within = fc_is_bounded(&v->friction) && fc_size(first) <= within;
     state->past = is_within ? fc_past(&scene) : (FcPast){.sigma = 0.0}; // an excess becomes heat
-    if (v->solver.evaluations > FC_MOST_EVALUATIONS) {
+    if (v->solver.evaluations > FC_MAX_EVALUATIONS) {
         return fc_message_set(
             message,
             "initialState = Settled needs more than %.0e evaluations of a vibration period: vibration.a_d = "
             "%.9g m at d = %.9g m moves the contact over too many orders of magnitude, or "
             "no period is like another",
-            FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
+            FC_MAX_EVALUATIONS, v->vibration.a_d, v->d);
     }
     if (!update_outputs(&fresh, message) || !fc_friction_contact_prepare(&fresh, v, message)) {
         return false;

@@ -23,7 +23,7 @@ static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
 // allows an eightfold slip, half of it costs twice the evaluations.
 static const double PART_OF_PERIOD = 1.0 / 32.0;
 static const double PART_OF_PEAK = 0.5;
-static const double LEAST_PART_OF_PERIOD = 1e-4;
+static const double MIN_PART_OF_PERIOD = 1e-4;
 
 // The largest part of a period up to a time event. At places half a period apart |V|, and with it the rates, may be
 // alike, as if nothing happened between them; at three places in a period no error control takes them for that. Half of
@@ -303,11 +303,11 @@ static double part_of_period(const View* view, double t, double period) {
     if (fc_has_static_friction(friction) && view->side != 0) {
         const FcVelocity at = fc_drive_velocity(&view->scene.drive, t);
         const double change =
-            fc_most(PART_OF_PEAK * friction->V_S, fabs(at.V) - FC_END_OF_PEAK * friction->V_S);
-        part = fc_least(part, fc_velocity_time_of_change(&at, change));
+            fc_max(PART_OF_PEAK * friction->V_S, fabs(at.V) - FC_END_OF_PEAK * friction->V_S);
+        part = fc_min(part, fc_velocity_time_of_change(&at, change));
     }
     assert(!(part < 0.0) && period > 0.0);
-    return fc_most(part, LEAST_PART_OF_PERIOD * period);
+    return fc_max(part, MIN_PART_OF_PERIOD * period);
 }
 
 // The first local time up to `end` at which the push towards the bound of that side ends; else `end`.
@@ -320,7 +320,7 @@ static double first_turn(const View* view, int side, double start, double period
     double before = fc_push_at(&of, start);
     double t = start;
     while (t < end) {
-        const double next = fc_least(end, t + part_of_period(view, t, period));
+        const double next = fc_min(end, t + part_of_period(view, t, period));
         const double after = fc_push_at(&of, next);
         if (before > 0.0 && after <= 0.0) {
             return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, &evaluations);
@@ -344,7 +344,7 @@ static double before_opening(const FcDrive* drive, double longest) {
         drive->load, drive->E, {drive->d.value - drive->vibration.a_d, drive->d.rate}};
     for (int i = 0; i < 3; i++) {
         longest =
-            falling[i].rate < 0.0 ? fc_least(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
+            falling[i].rate < 0.0 ? fc_min(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
     }
     return longest;
 }
@@ -357,7 +357,7 @@ static double time_to_turn(const View* view, double delta, double period, double
     for (int side = -1; side <= 1; side += 2) {
         const double t = view->side != -side ? first_turn(view, side, start, period, end) : end;
         if (t < end && (view->side != 0 || turns_near(view, side, delta, t))) {
-            turn = fc_least(turn, t);
+            turn = fc_min(turn, t);
         }
     }
     return turn;
@@ -414,7 +414,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COU
                                                                  : scene.F_C;
     const double length = force / at.sigma;
     const double amplitude = hypot(vibration->V_1, vibration->V_2) / (FC_TWO_PI * vibration->f);
-    const double energy = force * fc_most(length, amplitude);
+    const double energy = force * fc_max(length, amplitude);
     if (!(length > 0.0 && energy > 0.0) || !isfinite(length) || !isfinite(energy)) {
         return fc_message_set(message,
                               "the nominal values of the states are no finite numbers above 0: the limit of "

@@ -22,9 +22,9 @@ static const double GOOD_OVER_FORCE = 1e-10;
 // Half or twice of them changes the number of tries. The last range is 4^-19 of the first, at which rounding
 // limits the derivative.
 static const double RANGE_SHORTENED_BY = 0.25;
-enum { MOST_RANGES = 20 };
+enum { MAX_RANGES = 20 };
 
-// The largest scale [m/s] of a range of V, for a very soft bristle. It keeps the range below MOST_SPEED
+// The largest scale [m/s] of a range of V, for a very soft bristle. It keeps the range below MAX_SPEED
 // (friction_contact.c); half or twice of it does, too.
 static const double LARGEST_SCALE_OF_V = 1e12;
 
@@ -55,15 +55,15 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
     const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
-        .tolerance = tolerance, .force = fc_most(scale, DBL_MIN), .step_size = v->solver.stepSize};
+        .tolerance = tolerance, .force = fc_max(scale, DBL_MIN), .step_size = v->solver.stepSize};
     fc_method_settled(&scene, &options, start, force, evaluations, &held->scatters);
-    if (*evaluations > FC_MOST_EVALUATIONS) {
+    if (*evaluations > FC_MAX_EVALUATIONS) {
         return fc_message_set(message,
                               "F_t_settled, F_y_settled or a derivative of them needs more than %.0e "
                               "evaluations: vibration.a_d = %.9g m at "
                               "d = %.9g m moves the contact over too many orders of magnitude, or "
                               "no period is like another",
-                              FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
+                              FC_MAX_EVALUATIONS, v->vibration.a_d, v->d);
     }
     return true;
 }
@@ -92,11 +92,11 @@ static const double PART_OF_SCALE = 0.25; // for the first range
 // For a velocity, along or transverse, with its amplitude.
 static double first_range_of_V(const FcVariables* v, const FcScene* scene, double V, double amplitude) {
     const double speed = fabs(V);
-    double scale = fc_most(amplitude, speed - amplitude);
+    double scale = fc_max(amplitude, speed - amplitude);
     if (amplitude == 0.0) {
         const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
         const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
-        scale = fc_most(speed, fc_drive_vibrates(&scene->drive) ? fc_least(reach, LARGEST_SCALE_OF_V)
+        scale = fc_max(speed, fc_drive_vibrates(&scene->drive) ? fc_min(reach, LARGEST_SCALE_OF_V)
                                                                 : v->friction.V_S);
     }
     const double room = speed >= amplitude ? speed - amplitude : speed; // towards 0
@@ -110,7 +110,7 @@ static double first_range_of_amplitude(const FcVariables* v, double V, double am
     if (amplitude == 0.0) {
         return PART_OF_SCALE * (speed > 0.0 ? speed : v->friction.V_S);
     }
-    return PART_OF_SCALE * (amplitude < speed ? -fc_least(room, amplitude) : amplitude);
+    return PART_OF_SCALE * (amplitude < speed ? -fc_min(room, amplitude) : amplitude);
 }
 
 // The first range [the variable's unit] over which the force is fitted, with its sign. It contains neither V = 0
@@ -129,10 +129,10 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, s
     case offsetof(FcVariables, vibration.V_2):
         return first_range_of_amplitude(v, v->V_y, v->vibration.V_2);
     case offsetof(FcVariables, d):
-        return PART_OF_SCALE * fc_least(1.0 / decay, v->d);
+        return PART_OF_SCALE * fc_min(1.0 / decay, v->d);
     case offsetof(FcVariables, vibration.a_d):
-        return PART_OF_SCALE * (v->vibration.a_d > 0.0 ? -fc_least(1.0 / decay, v->vibration.a_d)
-                                                       : fc_least(1.0 / decay, fc_scene_d(scene, 0.0)));
+        return PART_OF_SCALE * (v->vibration.a_d > 0.0 ? -fc_min(1.0 / decay, v->vibration.a_d)
+                                                       : fc_min(1.0 / decay, fc_scene_d(scene, 0.0)));
     case offsetof(FcVariables, vibration.phase_d):
     case offsetof(FcVariables, vibration.phase_2):
         return PART_OF_SCALE;
@@ -183,7 +183,7 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
         const double factor = 2.0 * k * k / range;
         *slope = fc_plus(*slope, sign * factor, c);
         gap = fc_plus(gap, sign, c);
-        *error = k >= POINTS - 2 ? fc_most(*error, fabs(factor) * hypot(c.x, c.y)) : 0.0;
+        *error = k >= POINTS - 2 ? fc_max(*error, fabs(factor) * hypot(c.x, c.y)) : 0.0;
     }
     *missed = hypot(gap.x, gap.y);
     return true;
@@ -204,7 +204,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     double least = INFINITY;
     *slope = range == 0.0 ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};
     double evaluations = 0.0;
-    for (int tried = 0; tried < MOST_RANGES && range != 0.0; tried++) {
+    for (int tried = 0; tried < MAX_RANGES && range != 0.0; tried++) {
         FcVector found;
         double error;
         double missed;

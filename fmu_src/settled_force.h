@@ -13,7 +13,7 @@
 #include "friction_contact.h"
 
 // Within the tolerance, for any solver.method. Returns false, with *message filled, if the inputs and
-// parameters are not a valid combination, or if the period needs more than FC_MOST_EVALUATIONS.
+// parameters are not a valid combination, or if the period needs more than FC_MAX_EVALUATIONS.
 // contact->scatters says whether the means are those of many periods that differ.
 bool fc_settled_force(FcFrictionContact* contact, FcVector* force, FcMessage* message);
 

@@ -819,8 +819,8 @@ static Panel panel(const March* march, Real a, Real b, State from) {
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
 static const Real LEAST = 1e-16L; // of the whole step: smaller errors of a panel are accepted
 static const int DEEPEST = 110;
-static const Real MOST_PANELS = 1e6L,
-                  MOST_OF_SETTLING = 1.5e5L; // more are not taken, and the result is not known
+static const Real MAX_PANELS = 1e6L,
+                  MAX_OF_SETTLING = 1.5e5L; // more are not taken, and the result is not known
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
@@ -1070,7 +1070,7 @@ static void march_between(March* march, Real a, Real b) {
     World* w = march->w;
     const Real least = ldexpl(b - a, -DEEPEST);
     Real end = b;
-    while (a < b && w->panels <= MOST_PANELS) {
+    while (a < b && w->panels <= MAX_PANELS) {
         const Real middle = 0.5L * (a + end);
         State half = march->state;
         const Panel one = panel(march, a, end, march->state);
@@ -1330,7 +1330,7 @@ static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
     return passed;
 }
 
-enum { MOST_CYCLE = 4096 };
+enum { MAX_CYCLE = 4096 };
 
 typedef struct {
     State state;
@@ -1363,21 +1363,21 @@ static Vector newton_step(World* w, State state, Vector end, Real unit) {
 // Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
 // smallest deflection at the end of one that slips. Small slips come to periods that repeat in few of Newton's steps, though
 // each changes the state by little; these are taken first if the last state does not depend on the start. Returns false if none
-// of the first MOST_CYCLE that slip repeat.
+// of the first MAX_CYCLE that slip repeat.
 static bool go_periods(const World* of, State* state, Real n, bool newton, Sums* sums, Vector* mean) {
     Period p = {.world = *of, .unit = unit_of(of)};
     World* w = &p.world;
     w->panels = 0.0L;
-    Mark marks[MOST_CYCLE];
+    Mark marks[MAX_CYCLE];
     int count = 0, steps = newton ? 60 : 0;
     for (Real done = 0.0L; done < n;) {
         const March march = march_from(w, *state);
-        if (steps > 0 && w->panels > MOST_OF_SETTLING) {
+        if (steps > 0 && w->panels > MAX_OF_SETTLING) {
             steps = 0;
             w->panels = 0.0L;
             continue;
         }
-        if (w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
+        if (w->panels > (isinf(n) ? MAX_OF_SETTLING : MAX_PANELS)) {
             return false;
         }
         if (!march.slipped && (steps == 0 || w->elastic)) { // an elastic one drifts until it slips
@@ -1409,7 +1409,7 @@ static bool go_periods(const World* of, State* state, Real n, bool newton, Sums*
             k--;
         }
         if (k < 0) {
-            if (count == MOST_CYCLE) {
+            if (count == MAX_CYCLE) {
                 return false;
             }
             marks[count++] = (Mark){*state, done, *sums};
@@ -1522,7 +1522,7 @@ static bool advance(World* w, State* state, Sums* sums) {
     const March march = march_from(&rest, *state);
     add_times(sums, &march.sums, 1.0L);
     *state = march.state;
-    return known && rest.panels <= MOST_PANELS;
+    return known && rest.panels <= MAX_PANELS;
 }
 
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,

@@ -8,13 +8,13 @@
 static const double TURN = 6.283185307179586;
 static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the sequences in turn
 // The domain of docs/numerics.md.
-static const double MOST_KAPPA = 1e8;
-static const double MOST_PLANAR = 30.0;   // periods of a step,
-static const double MOST_LEAP = 400.0;    // and of a leap: of one whose inputs move
+static const double MAX_KAPPA = 1e8;
+static const double MAX_PLANAR = 30.0;   // periods of a step,
+static const double MAX_LEAP = 400.0;    // and of a leap: of one whose inputs move
 static const double SHORTEST = 1e-9;      // s, of a step
 static const double NEARLY_NONE = 1e-9;   // m/s, across
-static const double MOST_PERIODS = 1e6;   // of a step
-static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
+static const double MAX_PERIODS = 1e6;   // of a step
+static const double MAX_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
 static double between(double low, double high) { return low + (high - low) * random_01(); }
 static double sign(void) { return random_chance(0.5) ? 1.0 : -1.0; }
@@ -123,8 +123,8 @@ static void friction(ReferenceScene* s) {
     s->contact = 1 + random_below(3);
     s->input = random_chance(0.45) ? INPUT_LOAD : INPUT_SEPARATION;
     s->load = random_log(1e-1, 1e3);
-    const double most = random_chance(0.5) ? 1e3 : MOST_KAPPA;
-    const double scale = random_log(LEAST_KAPPA, most) / scene_kappa(s);
+    const double most = random_chance(0.5) ? 1e3 : MAX_KAPPA;
+    const double scale = random_log(MIN_KAPPA, most) / scene_kappa(s);
     *stiffness(s) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
         s->staticRatio = static_ratio(0.15);
@@ -184,7 +184,7 @@ static ReferenceScene contact_drawn(bool plane) {
 // ---- A mass ----
 
 static const double STIFFNESSES[] = {6e4, 6e12}, MASSES[] = {1e-3, 1e3}; // N/m; kg
-static const double MOST_RINGING = 60.0, LONGEST_OF_MASS = 1e-2;         // rad, of a stuck mass in a step; s
+static const double MAX_RINGING = 60.0, LONGEST_OF_MASS = 1e-2;         // rad, of a stuck mass in a step; s
 enum { STEPS_OF_MASS = 3 };
 
 static double force_on_mass(const ReferenceScene* s) { // a normal distribution, nearly
@@ -195,7 +195,7 @@ static double force_on_mass(const ReferenceScene* s) { // a normal distribution,
 // The force on the mass and V held or linear, and with them at times the load and the separation.
 static void step_of_mass(ReferenceScene* s) {
     const ReferenceRest rest = reference_rest(s);
-    const double ringing = s->law == LAW_COULOMB ? INFINITY : MOST_RINGING / sqrt(rest.sigma / s->m);
+    const double ringing = s->law == LAW_COULOMB ? INFINITY : MAX_RINGING / sqrt(rest.sigma / s->m);
     const double most = random_chance(0.1) ? LONGEST_OF_MASS : 0.1 * LONGEST_OF_MASS;
     s->h = fmin(random_chance(0.5) ? most : random_log(1e-6, most), ringing * random_log(1e-2, 1.0));
     s->F = random_chance(0.6) ? force_on_mass(s) : s->F;
@@ -306,7 +306,7 @@ static void step_at_random(ReferenceScene* s, const ReferenceScene* full) {
     s->staticRatio = random_chance(0.2) ? static_ratio(0.2) : s->staticRatio;
     s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
     const bool linear = random_chance(0.4);
-    s->h = length(s, s->V_2 != 0.0 ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS);
+    s->h = length(s, s->V_2 != 0.0 ? MAX_PLANAR : linear ? MAX_MOVING : MAX_PERIODS);
     if (linear) {
         rates(s);
     }
@@ -318,7 +318,7 @@ static bool mass_is_in_domain(const ReferenceScene* s) {
     const ReferenceRest rest = reference_rest(s);
     return s->m >= MASSES[0] && s->m <= MASSES[1] && s->h >= 1e-3 * SHORTEST && s->h <= LONGEST_OF_MASS &&
            rest.sigma >= 0.9 * STIFFNESSES[0] && rest.sigma <= 1.1 * STIFFNESSES[1] &&
-           (s->law == LAW_COULOMB || s->h * sqrt(rest.sigma / s->m) <= MOST_RINGING) && s->V_S >= 1e-3 &&
+           (s->law == LAW_COULOMB || s->h * sqrt(rest.sigma / s->m) <= MAX_RINGING) && s->V_S >= 1e-3 &&
            s->sigma_1 <= 2.0 * sqrt(rest.sigma * s->m) && s->sigma_2 <= 100.0 && s->V_1 <= 3.0;
 }
 
@@ -334,8 +334,8 @@ bool scene_is_in_domain(const ReferenceScene* s) {
         return contact && mass_is_in_domain(s);
     }
     return contact &&
-           !(swings && (fmin(kappa, kappa_end) < LEAST_KAPPA || fmax(kappa, kappa_end) > MOST_KAPPA)) &&
-           s->h >= SHORTEST && periods >= 1e-6 && periods <= MOST_PERIODS &&
+           !(swings && (fmin(kappa, kappa_end) < MIN_KAPPA || fmax(kappa, kappa_end) > MAX_KAPPA)) &&
+           s->h >= SHORTEST && periods >= 1e-6 && periods <= MAX_PERIODS &&
            !(drops && (s->V_S < 1e-3 * top || s->V_S > 10.0 * top)) && s->sigma_1 <= damping &&
            s->sigma_2 <= damping && scene_start_over_limit(s) <= LARGEST_START &&
            (s->input == INPUT_SEPARATION ||
@@ -354,8 +354,8 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
     const bool near_line = plane && number % 8 == 1; // a line, but for a V_y that is nearly none
     ReferenceScene full = contact_drawn(plane && !near_line);
     const bool linear = random_chance(0.5) || leaps;
-    const double most = plane ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS;
-    full.h = leaps ? random_log(12.0, MOST_LEAP) / full.f : length(&full, most);
+    const double most = plane ? MAX_PLANAR : linear ? MAX_MOVING : MAX_PERIODS;
+    full.h = leaps ? random_log(12.0, MAX_LEAP) / full.f : length(&full, most);
     full.V_y = near_line ? NEARLY_NONE : full.V_y;
     for (int k = 0, wanted = near_line ? 1 : 1 + random_below(4); k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);

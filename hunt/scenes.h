@@ -26,7 +26,7 @@ double scene_gain(const ReferenceScene* scene);
 double scene_start_over_limit(const ReferenceScene* scene);
 
 // The domain of the promise: the smallest kappa of a vibration, and the largest start over the limit.
-#define LEAST_KAPPA 1e-3
+#define MIN_KAPPA 1e-3
 #define LARGEST_START 100.0
 
 #endif

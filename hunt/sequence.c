@@ -125,7 +125,7 @@ Sequence sequence_read(const char* text) {
     Sequence sequence = {.tolerance = 1e-4, .method = 1, .steps = 1, .step = {start_values()}};
     for (char* word = strtok(copy, " \n"); word != NULL; word = strtok(NULL, " \n")) {
         ReferenceScene* last = &sequence.step[sequence.steps - 1];
-        if (strcmp(word, "then") == 0 && sequence.steps < MOST_STEPS) {
+        if (strcmp(word, "then") == 0 && sequence.steps < MAX_STEPS) {
             sequence.step[sequence.steps++] = scene_after(last);
         } else if (sscanf(word, "method=%d", &sequence.method) != 1 &&
                    sscanf(word, "tolerance=%lf", &sequence.tolerance) != 1 && !read_field(last, word)) {

@@ -9,13 +9,13 @@
 #include "friction_contact.h"
 #include "reference.h"
 
-enum { MOST_STEPS = 10, SEQUENCE_TEXT = 8000 };
+enum { MAX_STEPS = 10, SEQUENCE_TEXT = 8000 };
 
 typedef struct {
     double tolerance; // solver.tolerance
     int method;       // number of solver.method
     int steps;
-    ReferenceScene step[MOST_STEPS]; // of the later ones delta_0, v_0, x_0 and slips are not used
+    ReferenceScene step[MAX_STEPS]; // of the later ones delta_0, v_0, x_0 and slips are not used
 } Sequence;
 
 // The start values of modelDescription.xml, and a step of 0.1 ms.

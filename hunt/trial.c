@@ -14,7 +14,7 @@ const char* const GRADE_NAMES[GRADES] = {"F_t",       "F_y",   "F_t_mean", "F_y_
 static const double ROUNDING = 1e-11; // of S, beside the tolerance
 static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
 static const double SHARP = 0.1; // of the allowed error: by this the reference may differ from its finer self
-static const double LEAST_S = 1e-20; // N, and J: S and the path are 0 if nothing acts
+static const double MIN_S = 1e-20; // N, and J: S and the path are 0 if nothing acts
 
 // ---- The FMU ----
 
@@ -78,7 +78,7 @@ static double over(double error, double allowed) { return isnan(error) ? INFINIT
 static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range[2], double tolerance) {
     const ReferenceStep* truth = &taken->truth;
     const FmuStep* step = &taken->step;
-    const double S = fmax(truth->S, LEAST_S);
+    const double S = fmax(truth->S, MIN_S);
     const double path = truth->path + hypot(truth->result[DELTA] - step->delta_start,
                                             truth->result[DELTA_Y] - step->delta_y_start);
     const double lengths =
@@ -89,7 +89,7 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
     const double astray = scene->m > 0.0 ? S * scene->h / scene->m * fmin(scene->h, ringing) : 0.0;
     const double digits = DIGITS + (vibrates(scene) ? 20.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
     const double force = (tolerance + ROUNDING) * S,
-                 energy = force * (path + astray) + LEAST_S + digits * fmax(S, step->force_before) * lengths;
+                 energy = force * (path + astray) + MIN_S + digits * fmax(S, step->force_before) * lengths;
     const double mean = force + digits * scene->sigma_1 * lengths / scene->h;
     // Of a mass, whose velocity and place are rounded at both ends of the step.
     const double speed = fabs(scene->v_0) + fabs(truth->result[BODY_V]),
@@ -190,7 +190,7 @@ static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
     open_run(&run, &still, sequence);
     if (run.started && fc_settled_force(&run.contact, found, &run.message) &&
         reference_settled_force(&still, truth, &S)) {
-        const double allowed = (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S);
+        const double allowed = (sequence->tolerance + ROUNDING) * fmax(S, MIN_S);
         ratio = fmax(over(found->x - truth[0], allowed), over(found->y - truth[1], allowed));
     }
     fc_friction_contact_free(&run.contact);
@@ -199,7 +199,7 @@ static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
 
 // Whether the scene has a settled state that is promised.
 static bool settles(const ReferenceScene* s) {
-    return s->law == LAW_COULOMB || !vibrates(s) || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
+    return s->law == LAW_COULOMB || !vibrates(s) || (scene_kappa(s) >= MIN_KAPPA && !may_be_chaotic(s));
 }
 
 // Whether the step is outside the domain of the promise. Over more than ten periods of a motion that may be chaotic the
@@ -207,7 +207,7 @@ static bool settles(const ReferenceScene* s) {
 static bool is_outside(const ReferenceScene* s, const ReferenceScene* first) {
     const bool swings = s->law != LAW_COULOMB && (s->V_1 != 0.0 || s->V_2 != 0.0);
     const bool forgets = vibrates(s) && may_be_chaotic(s) && s->h * s->f > 10.0;
-    return forgets || (swings && scene_kappa(s) < LEAST_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
+    return forgets || (swings && scene_kappa(s) < MIN_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
            (first->initial == START_SETTLED && !settles(first));
 }
 

@@ -56,7 +56,7 @@ typedef struct {
     double evaluations; // of the FMU, over all steps
     bool refused;       // whether the step after them was refused
     FcMessage message;  // why
-    TrialStep taken[MOST_STEPS];
+    TrialStep taken[MAX_STEPS];
 } Trial;
 
 // settled: F_t_settled of the first step is judged, too.

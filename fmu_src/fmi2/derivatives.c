@@ -133,7 +133,7 @@ static double small_change(const FcFrictionContact* contact, const FcVariableInf
     if (strcmp(info->unit, "m/s") == 0) {
         scale = v->friction.V_S;
     } else if (strcmp(info->unit, "m") == 0) {
-        scale = fc_least(v->d, v->contact.R_q / v->contact.lambda);
+        scale = fc_min(v->d, v->contact.R_q / v->contact.lambda);
     } else if (strcmp(info->unit, "rad") == 0) {
         scale = 1.0;
     } else if (info->offset == offsetof(FcVariables, body.F)) {
@@ -141,7 +141,7 @@ static double small_change(const FcFrictionContact* contact, const FcVariableInf
     } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
         scale = moment;
     } else if (info->offset == offsetof(FcVariables, vibration.f)) {
-        scale *= fc_least(1.0, moment / fabs(contact->state.time));
+        scale *= fc_min(1.0, moment / fabs(contact->state.time));
     }
     return scale > 0.0 ? ldexp(1.0, ilogb(part * scale)) : 0.0;
 }

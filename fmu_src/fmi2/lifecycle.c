@@ -95,7 +95,7 @@ static const FcVariableInfo* tolerance_variable(void) {
 
 static fmi2Status use_tolerance(FcInstance* instance, double tolerance) {
     const FcVariableInfo* info = tolerance_variable();
-    const double used = fc_least(fc_most(tolerance, info->min), info->max);
+    const double used = fc_min(fc_max(tolerance, info->min), info->max);
     instance->contact.state.variables.solver.tolerance = used;
     if (used == tolerance) {
         return fmi2OK;

@@ -16,9 +16,9 @@ static double rounding_of_time(double t, double h) { return 1e-6 * h + 16.0 * DB
 // as this one. A step that begins at the stop time is one too many.
 static double rounding_of_end(const FcExperiment* experiment, double end, double h) {
     const double steps = (end - experiment->start_time) / h;
-    const double sum = 0.5 * DBL_EPSILON * steps * fc_most(fabs(experiment->start_time), fabs(end));
+    const double sum = 0.5 * DBL_EPSILON * steps * fc_max(fabs(experiment->start_time), fabs(end));
     const double rounding = rounding_of_time(end, h);
-    return fc_most(rounding, fc_least(sum, h - rounding));
+    return fc_max(rounding, fc_min(sum, h - rounding));
 }
 
 static bool check_step(const FcInstance* instance, double t, double h) {

@@ -175,16 +175,16 @@ double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t) {
                                (at_t.sine * drive->cos_phase_d + at_t.cosine * drive->sin_phase_d);
 }
 
-double fc_input_least(FcLinearInput input, double h) { return fc_least(input.value, linear(input, h)); }
+double fc_input_min(FcLinearInput input, double h) { return fc_min(input.value, linear(input, h)); }
 
-double fc_input_most(FcLinearInput input, double h) { return fc_most(input.value, linear(input, h)); }
+double fc_input_max(FcLinearInput input, double h) { return fc_max(input.value, linear(input, h)); }
 
 double fc_drive_largest_speed(const FcDrive* drive, double h) {
-    const double along = fc_most(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
+    const double along = fc_max(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
     if (!fc_drive_is_planar(drive)) {
         return along;
     }
-    return hypot(along, fc_most(fabs(drive->V_y.value), fabs(linear(drive->V_y, h))) + drive->vibration.V_2);
+    return hypot(along, fc_max(fabs(drive->V_y.value), fabs(linear(drive->V_y, h))) + drive->vibration.V_2);
 }
 
 // Half an angle [rad] up to which the displacement is a series. Derived: the remainder of the series is below
@@ -318,7 +318,7 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
         const double time =
-            t + fc_least(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
+            t + fc_min(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
         return time < end ? (FcDriveEvent){time, true} : (FcDriveEvent){end, false};
     }
     const double time = t + angle_ahead(now, (V > 0.0) == (V_1 > 0.0) ? FC_PI : 0.0, least) / drive->omega;
@@ -347,8 +347,8 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
             const double angle = asin(slope);
             const double least = least_ahead(now);
             const double turns =
-                fc_least(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least));
-            to = fc_least(end, from + turns / drive->omega);
+                fc_min(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least));
+            to = fc_min(end, from + turns / drive->omega);
         }
         const double V_to = fc_drive_V(drive, to);
         if ((V_from < 0.0) != (V_to < 0.0)) {

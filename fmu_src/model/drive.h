@@ -32,8 +32,8 @@ typedef struct {
 double fc_input_after(FcLinearInput input, double t);
 
 // Bounds of an input over [0, h].
-double fc_input_least(FcLinearInput input, double h);
-double fc_input_most(FcLinearInput input, double h);
+double fc_input_min(FcLinearInput input, double h);
+double fc_input_max(FcLinearInput input, double h);
 
 typedef struct {
     FcLinearInput V;    // m/s

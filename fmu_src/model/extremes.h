@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static inline double fc_least(double a, double b) { return isless(b, a) || a != a ? b : a; }
-static inline double fc_most(double a, double b) { return isgreater(b, a) || a != a ? b : a; }
+static inline double fc_min(double a, double b) { return isless(b, a) || a != a ? b : a; }
+static inline double fc_max(double a, double b) { return isgreater(b, a) || a != a ? b : a; }
 
 #endif

@@ -9,12 +9,12 @@
 
 // The largest number of evaluations of one root, after which the last value is returned. Bisection alone
 // takes about 60 to reach rounding; half of this would suffice, twice would cost nothing.
-enum { MOST_ROOT_STEPS = 200 };
+enum { MAX_ROOT_STEPS = 200 };
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double* evaluations) {
     assert(a <= b && close >= 0.0);
-    const double rounding = DBL_EPSILON * fc_most(fabs(a), fabs(b));
+    const double rounding = DBL_EPSILON * fc_max(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;
     double far = a;
@@ -24,15 +24,15 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
     double at_before = at_a;
     const bool ends_negative = at_b < 0.0;
     double part = at_b / (at_b - at_a);
-    for (int i = 0; i < MOST_ROOT_STEPS; i++) {
+    for (int i = 0; i < MAX_ROOT_STEPS; i++) {
         const bool on_side = (at_near < 0.0) == ends_negative;
         const double width = fabs(near - far);
         const bool is_close = fabs(at_near) <= close;
         if (at_near == 0.0 || (on_side && is_close) || width <= rounding) {
             break;
         }
-        const double least = fc_least(0.5, fc_most(1e-9, rounding / width)); // so that t is another number
-        const double t = near + fc_most(least, fc_least(1.0 - least, part)) * (far - near);
+        const double least = fc_min(0.5, fc_max(1e-9, rounding / width)); // so that t is another number
+        const double t = near + fc_max(least, fc_min(1.0 - least, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;
         before = near;

@@ -27,14 +27,14 @@ static double open_separation(const FcContactAtModulus* at_E) {
     }
     const double without_stiffness = log(at_E->stiffness_0 / NOTHING);
     if (at_E->model == FC_CONTACT_MINDLIN) {
-        return fc_least(without_load, without_stiffness / at_E->decay);
+        return fc_min(without_load, without_stiffness / at_E->decay);
     }
     double d =
         without_load; // of stiffness_0 e^(-2 decay d) / d^3, by iteration: an error falls to 1 % each time
     for (int i = 0; i < 8; i++) {
         d = (without_stiffness - 3.0 * log(d)) / (2.0 * at_E->decay);
     }
-    return fc_least(without_load, d);
+    return fc_min(without_load, d);
 }
 
 void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcContactAtModulus* at_E,
@@ -65,7 +65,7 @@ void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcC
 double fc_scene_closed_by(const FcScene* scene) {
     return follows_load(scene)
                ? scene->drive.load.value - NOTHING
-               : fc_most(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
+               : fc_max(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
 }
 
 // The largest factor by which a load moves in a piece. Chosen empirically: a larger factor needs finer
@@ -85,7 +85,7 @@ static double time_to_edge(const FcScene* scene, double rest) {
     const int most = scene->drive.E.rate == 0.0 ? 1 : 8;
     double time = 0.0;
     for (int i = 0; i < most; i++) {
-        const FcContactAtModulus at_E = contact_at(scene, fc_least(fc_most(time, 0.0), rest));
+        const FcContactAtModulus at_E = contact_at(scene, fc_min(fc_max(time, 0.0), rest));
         time = (open_separation(&at_E) - d.value) / d.rate;
     }
     return time;
@@ -101,21 +101,21 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     // Time until the contact opens or closes; negative if this lies behind.
     const bool opens = by_load ? rate < 0.0 : rate > 0.0;
     const bool is_far = by_load || scene->is_open ||
-                        scene->at_E.decay * fc_most(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
+                        scene->at_E.decay * fc_max(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
     const double to_edge = by_load  ? -drive->load.value / rate
                            : is_far ? time_to_edge(scene, rest)
                                     : HUGE_VAL;
     const double room = FC_NEARLY_OPEN * whole;
     scene->is_open = scene->is_open || (opens && to_edge <= room);
     if (scene->is_open) {
-        return opens ? rest : fc_least(rest, to_edge + room);
+        return opens ? rest : fc_min(rest, to_edge + room);
     }
     if (by_load) {
         const double part = rate > 0.0 ? 1.0 - LOAD_OF_PIECE : 1.0 - 1.0 / LOAD_OF_PIECE;
-        return fc_least(rest, part * to_edge);
+        return fc_min(rest, part * to_edge);
     }
     const double moved = log(LOAD_OF_PIECE) / (scene->at_E.decay * fabs(rate));
-    return fc_least(rest, to_edge > 0.0 ? fc_least(moved, to_edge) : moved);
+    return fc_min(rest, to_edge > 0.0 ? fc_min(moved, to_edge) : moved);
 }
 
 FcScene fc_scene_later(const FcScene* scene, double t) {
@@ -236,20 +236,20 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t, FcPhase at_t) {
 double fc_scene_smallest_d(const FcScene* scene, double h) {
     assert(h >= 0.0);
     const FcDrive* drive = &scene->drive;
-    double d = fc_input_least(drive->d, h) - drive->vibration.a_d;
+    double d = fc_input_min(drive->d, h) - drive->vibration.a_d;
     if (scene->floats) {
-        d += rest_separation(scene, fc_least(scene->at_E.load_0, contact_at(scene, h).load_0),
-                             fc_most(drive->load.value, fc_drive_load(drive, h)));
+        d += rest_separation(scene, fc_min(scene->at_E.load_0, contact_at(scene, h).load_0),
+                             fc_max(drive->load.value, fc_drive_load(drive, h)));
     }
     return d;
 }
 
 static double largest_d(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
-    double d = fc_input_most(drive->d, h) + drive->vibration.a_d;
+    double d = fc_input_max(drive->d, h) + drive->vibration.a_d;
     if (scene->floats) {
-        d += rest_separation(scene, fc_most(scene->at_E.load_0, contact_at(scene, h).load_0),
-                             fc_least(drive->load.value, fc_drive_load(drive, h)));
+        d += rest_separation(scene, fc_max(scene->at_E.load_0, contact_at(scene, h).load_0),
+                             fc_min(drive->load.value, fc_drive_load(drive, h)));
     }
     return d;
 }
@@ -264,7 +264,7 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
         return scene->F_C;
     }
     const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fc_least(scene->at_E.load_0, end.load_0);
+    const double load_0 = fc_min(scene->at_E.load_0, end.load_0);
     return scene->friction->mu * load_0 * fc_contact_decayed(&scene->at_E, largest_d(scene, h));
 }
 
@@ -272,7 +272,7 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
     if (fc_scene_ratio_is_constant(scene)) {
         const FcContactAtModulus end = contact_at(scene, h);
         return scene->friction->mu *
-               fc_least(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
+               fc_min(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
     }
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
 }
@@ -292,7 +292,7 @@ double fc_scene_largest_saturation(const FcScene* scene, double h) {
     for (int end = 0; end <= moves; end++) {
         const FcContactAtModulus at_E = contact_at(scene, end == 0 ? 0.0 : h);
         const FcContactResponse response = fc_contact_response(&at_E, d);
-        largest = fc_most(largest, (follows ? friction->mu * response.F_n : scene->F_C) / response.sigma);
+        largest = fc_max(largest, (follows ? friction->mu * response.F_n : scene->F_C) / response.sigma);
     }
     return largest * fc_static_ratio(friction);
 }
@@ -315,7 +315,7 @@ double fc_scene_mean_limit(const FcScene* scene, double t) {
         return scene->F_C;
     }
     if (follows_load(scene)) {
-        return scene->friction->mu * fc_most(0.0, fc_drive_load(&scene->drive, t));
+        return scene->friction->mu * fc_max(0.0, fc_drive_load(&scene->drive, t));
     }
     const FcContactAtModulus at_E = contact_at(scene, t);
     const double d = scene->drive.d.value + scene->drive.d.rate * t;

@@ -25,7 +25,7 @@ double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle,
 double fc_body_acceleration(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body,
                             double F) {
     const double inertia = fc_body_inertia(scene, regime, bristle, body);
-    return (F - fc_motion(scene, regime, bristle).force.x) / fc_most(inertia, FC_LEAST_INERTIA * body->m);
+    return (F - fc_motion(scene, regime, bristle).force.x) / fc_max(inertia, FC_MIN_INERTIA * body->m);
 }
 
 FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle) {

@@ -37,7 +37,7 @@ static inline void fc_body_move(FcBody* body, double h, double impulse) {
 
 // m less what the damper takes of it [kg]: -dF_t/dw' where the kinetic bound follows w. At 0 w would jump, and before, at
 // that part of m, it counts as having jumped. Chosen empirically: half of it costs evaluations.
-static const double FC_LEAST_INERTIA = 1e-3;
+static const double FC_MIN_INERTIA = 1e-3;
 double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body);
 
 // The acceleration [m/s2] under the force F [N] in a scene whose V contains v: the rate of the kinetic bound moves with it.

@@ -25,8 +25,8 @@ static const double SHARE_OF_EVENT = 1e-3;
 static const double MARGIN_OF_CURVE = 1.2;
 // Lengths, which decide the cost alone: by which the phase of the contact or of the ringing moves in a panel; of a panel in u;
 // and from a reversal in layers, beyond which the variable is t.
-static const double MOST_PHASE = 2.0;
-static const double MOST_U = 3.0;
+static const double MAX_PHASE = 2.0;
+static const double MAX_U = 3.0;
 static const double END_OF_LAYER = 30.0;
 // The part of the tolerance that periods which are counted may change.
 static const double SHARE_OF_PERIODS = 0.1;
@@ -37,7 +37,7 @@ static const double EPSILON = 1e-15;
 // Of two panels of which the longer shows an event and the shorter does not, this part of the longer is looked at next.
 static const double BETWEEN = 0.1;
 // Cuts at one event, refusals of one panel, and panels in a row that do not get on, at an event that rounding hides.
-enum { MOST_CUTS = 24, MOST_TRIES = 25, MOST_STALLED = 50 };
+enum { MAX_CUTS = 24, MAX_TRIES = 25, MAX_STALLED = 50 };
 
 typedef struct {
     const FcPlane* plane;
@@ -94,13 +94,13 @@ static Close event_function(const March* march, Event event, const FcNodes* node
             f[i] = -march->at.side * panel->w[i];
         }
         allowed = SHARE_OF_LAYER * sqrt(2.0 * tolerance * D * fabs(panel->rate[LAST].w));
-        return (Close){rounding, fc_most(rounding, allowed)};
+        return (Close){rounding, fc_max(rounding, allowed)};
     case MEETING: // of the squares, which are smooth where delta is 0
         for (int i = 0; i < POINTS; i++) {
             f[i] = (panel->delta[i] - radius(nodes, i)) * (panel->delta[i] + radius(nodes, i));
         }
         allowed =
-            fc_most(1e-15, (fc_has_static_friction(friction) ? SHARE_OF_DROP : SHARE_OF_EVENT) * tolerance);
+            fc_max(1e-15, (fc_has_static_friction(friction) ? SHARE_OF_DROP : SHARE_OF_EVENT) * tolerance);
         // One that relaxes may come to it without an end.
         return (Close){(march->at.kind == FC_RELAXES ? allowed : 4e-16) * D * D, allowed * D * D};
     case END_OF_PUSH: // a velocity, over that of the ringing
@@ -109,12 +109,12 @@ static Close event_function(const March* march, Event event, const FcNodes* node
         }
         allowed =
             SHARE_OF_EVENT * tolerance * march->interval->force / sqrt(march->body->m * nodes->sigma[LAST]);
-        return (Close){rounding, fc_most(rounding, allowed)};
+        return (Close){rounding, fc_max(rounding, allowed)};
     case JUMP: // along a bound that follows w: the damper takes all of the mass's inertia
         for (int i = 0; i < POINTS; i++) {
-            f[i] = FC_LEAST_INERTIA - panel->rate[i].inertia;
+            f[i] = FC_MIN_INERTIA - panel->rate[i].inertia;
         }
-        return (Close){0.0, 0.1 * FC_LEAST_INERTIA};
+        return (Close){0.0, 0.1 * FC_MIN_INERTIA};
     default:
         for (int i = 0; i < POINTS; i++) {
             f[i] = FC_END_OF_CURVE * friction->V_S - fabs(panel->w[i]);
@@ -153,12 +153,12 @@ static Event first_event(const March* march, const FcNodes* nodes, const FcBodyP
         const Event at_bound = kind == FC_SLIPS ? END_OF_PUSH : MEETING;
         const double bound = place_of(march, at_bound, nodes, panel);
         first = bound < *place ? at_bound : first;
-        *place = fc_least(*place, bound);
+        *place = fc_min(*place, bound);
     }
     if (kind == FC_SLIPS && friction->sigma_1 != 0.0 && fc_has_static_friction(friction)) {
         const double jump = place_of(march, JUMP, nodes, panel);
         first = jump < *place ? JUMP : first;
-        *place = fc_least(*place, jump);
+        *place = fc_min(*place, jump);
     }
     return *place <= 1.0 ? first : NO_EVENT;
 }
@@ -223,25 +223,25 @@ static double excess_of(const March* march, const FcNodes* nodes, const FcBodyPa
     }
     // The parts of a slope that cancel are rounded: delta' of w and the relaxation, v' of the forces.
     const FcFriction* friction = friction_of(march);
-    const double w = fc_most(fabs(panel->w[START]), fabs(panel->w[LAST]));
+    const double w = fc_max(fabs(panel->w[START]), fabs(panel->w[LAST]));
     const double forces = fabs(fc_input_after(march->body->F, nodes->t[LAST])) + fabs(F[LAST]) +
                           (2.0 * friction->sigma_1 + friction->sigma_2) * w;
-    const double rounded = ROUNDING * fc_most(nodes->tau[START], nodes->tau[LAST]);       // s
-    const double e_v = fc_most(0.0, m * fc_radau_unresolved(of_v, z) - rounded * forces); // N s
+    const double rounded = ROUNDING * fc_max(nodes->tau[START], nodes->tau[LAST]);       // s
+    const double e_v = fc_max(0.0, m * fc_radau_unresolved(of_v, z) - rounded * forces); // N s
     double of_end = 0.0;                                                                  // N
     double life = H;
     if (kind != FC_SLIPS) {
         const double r = panel->rate[LAST].relaxation;
-        const double e_delta = fc_most(0.0, fc_radau_unresolved(of_delta, z) - rounded * 2.0 * w); // m
+        const double e_delta = fc_max(0.0, fc_radau_unresolved(of_delta, z) - rounded * 2.0 * w); // m
         of_end = interval->stiffness * e_delta / (1.0 + nodes->tau[LAST] * r) + omega * e_v;
-        life = fc_least(H, 3.0 / (r + 1.0 / H));
+        life = fc_min(H, 3.0 / (r + 1.0 / H));
     }
-    const double share = fc_least(1.0, fc_most(1e-3, nodes->duration / life));
-    const double share_of_mean = fc_least(1.0, fc_most(1e-3, nodes->duration / H));
-    const double motion = fc_most(of_end / share, e_v / (H * share_of_mean));
+    const double share = fc_min(1.0, fc_max(1e-3, nodes->duration / life));
+    const double share_of_mean = fc_min(1.0, fc_max(1e-3, nodes->duration / H));
+    const double motion = fc_max(of_end / share, e_v / (H * share_of_mean));
     const double energy =
         share_of_mean * fc_error_of_force(nodes, march->speed, 0.0, kind != FC_STICKS, F, panel->w);
-    return fc_most(SAFETY * motion, FC_SAFETY / FC_SHARE_OF_MEAN * energy) / fc_allowed_force(interval);
+    return fc_max(SAFETY * motion, FC_SAFETY / FC_SHARE_OF_MEAN * energy) / fc_allowed_force(interval);
 }
 
 // The longest duration [s] of the next panel, before it is judged.
@@ -249,9 +249,9 @@ static double planned(const March* march) {
     const FcDrive* drive = &march->plane->scene->drive;
     const FcKind kind = march->at.kind;
     const double ringing = sqrt(march->interval->stiffness / march->body->m);
-    double h = fc_least(march->part.end - march->t, MOST_PHASE * fc_smooth_time(&march->interval->pace));
+    double h = fc_min(march->part.end - march->t, MAX_PHASE * fc_smooth_time(&march->interval->pace));
     if (march->h > 0.0) {
-        h = fc_least(h, march->h);
+        h = fc_min(h, march->h);
     }
     const FcFriction* friction = friction_of(march);
     const bool in_curve = kind == FC_SLIPS && fc_has_stribeck_curve(friction);
@@ -266,44 +266,44 @@ static double planned(const March* march) {
             fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit)
                 .w;
         const bool leaves = fabs(w) < FC_END_OF_CURVE * friction->V_S;
-        return leaves ? fc_least(h, fc_most(friction->V_S, 0.5 * fabs(w)) / (fabs(rate) + DBL_MIN)) : h;
+        return leaves ? fc_min(h, fc_max(friction->V_S, 0.5 * fabs(w)) / (fabs(rate) + DBL_MIN)) : h;
     }
     if (kind == FC_RELAXES) {
-        return fc_least(h, fc_least(1.5 / ringing, 3.0 / (at.sigma * fabs(w) / at.limit + DBL_MIN)));
+        return fc_min(h, fc_min(1.5 / ringing, 3.0 / (at.sigma * fabs(w) / at.limit + DBL_MIN)));
     }
     // A stuck bristle goes some radii of its bound: so far the points show a meeting.
     const double w_rate =
         fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit).w;
-    const double way = FC_MOST_OF_BOUND * at.static_limit / at.sigma;
-    h = fc_least(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
+    const double way = FC_MAX_RADII * at.static_limit / at.sigma;
+    h = fc_min(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
     const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
-    h = jerk > 0.0 ? fc_least(h, cbrt(6.0 * way / jerk)) : h;
-    return march->is_known  ? fc_least(h, MOST_PHASE / ringing)
+    h = jerk > 0.0 ? fc_min(h, cbrt(6.0 * way / jerk)) : h;
+    return march->is_known  ? fc_min(h, MAX_PHASE / ringing)
            : march->h > 0.0 ? h
-                            : fc_least(h, 1.0 / ringing);
+                            : fc_min(h, 1.0 / ringing);
 }
 
 // Makes the next panel, as long as it is accurate; *h becomes its length in u. False if it cannot be solved.
 static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel) {
     const FcStraight* in = &march->part.in;
-    *h = fc_straight_place(in, fc_least(march->part.end, march->t + planned(march))) - u;
+    *h = fc_straight_place(in, fc_min(march->part.end, march->t + planned(march))) - u;
     *h = *h > 0.0
              ? *h
              : fc_straight_place(in, march->part.end) - u; // what is planned is less than t is rounded by
     if (isfinite(in->length)) {
-        *h = fc_least(*h, MOST_U);
+        *h = fc_min(*h, MAX_U);
     }
     assert(*h > 0.0);
     for (int tries = 0;; tries++) {
         const bool is_solved = make(march, u, *h, nodes, panel);
         const double excess = march->is_known ? 0.0 : is_solved ? excess_of(march, nodes, panel) : HUGE_VAL;
-        if (excess <= 1.0 || tries >= MOST_TRIES) {
+        if (excess <= 1.0 || tries >= MAX_TRIES) {
             const double grows =
-                tries > 0 ? 1.0 : fc_least(4.0, 0.9 * pow(fc_most(excess, 1e-30), -1.0 / 16.0));
+                tries > 0 ? 1.0 : fc_min(4.0, 0.9 * pow(fc_max(excess, 1e-30), -1.0 / 16.0));
             march->h = march->is_known ? 0.0 : nodes->duration * grows;
             return is_solved;
         }
-        *h *= isfinite(excess) ? fc_least(0.9, fc_most(0.2, 0.9 * pow(excess, -1.0 / 14.0))) : 0.4;
+        *h *= isfinite(excess) ? fc_min(0.9, fc_max(0.2, 0.9 * pow(excess, -1.0 / 14.0))) : 0.4;
     }
 }
 
@@ -314,8 +314,8 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
     double place;
     double seen = *h; // the length of the last panel that shows the event
     *event = first_event(march, nodes, panel, &place);
-    for (int cuts = 0; *event != NO_EVENT && cuts < MOST_CUTS; cuts++) {
-        assert(place > 0.0 && place <= fc_most(1.5, seen / *h));
+    for (int cuts = 0; *event != NO_EVENT && cuts < MAX_CUTS; cuts++) {
+        assert(place > 0.0 && place <= fc_max(1.5, seen / *h));
         *h *= place;
         if (!make(march, u, *h, nodes, panel)) {
             return false;
@@ -452,10 +452,10 @@ static void pass_reversal(March* march, const FcNodes* nodes, const FcBodyPanel*
     const double away = w_rate != 0.0 ? panel->w[LAST] / w_rate : 0.0; // s, from the reversal
     double length = sqrt(2.0 * nodes->limit[LAST] / (nodes->sigma[LAST] * fabs(w_rate)));
     if (fc_has_stribeck_curve(friction)) {
-        length = fc_least(length, friction->V_S / fabs(w_rate));
+        length = fc_min(length, friction->V_S / fabs(w_rate));
     }
     const bool is_layer = length < march->interval->duration && fabs(away) <= length;
-    use_variable(march, march->t - fc_most(0.0, away), is_layer ? length : INFINITY);
+    use_variable(march, march->t - fc_max(0.0, away), is_layer ? length : INFINITY);
     march->h = is_layer ? march->interval->duration : 0.0;
 }
 
@@ -487,7 +487,7 @@ static bool take_free_time(March* march) {
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double rest = march->part.end - march->t;
     const double x = fc_body_stuck_free_time(stuck, at.static_limit / at.sigma, rest);
-    if (!(x >= rest || x * stuck->ringing > MOST_PHASE)) {
+    if (!(x >= rest || x * stuck->ringing > MAX_PHASE)) {
         return false;
     }
     const double end = x >= rest ? march->part.end : march->t + x;
@@ -506,7 +506,7 @@ static bool take_free_time(March* march) {
 // The next panel, up to its first event.
 static bool take_panel(March* march) {
     const double ringing = sqrt(march->interval->stiffness / march->body->m);
-    march->is_known = (march->part.end - march->t) * ringing > MOST_PHASE &&
+    march->is_known = (march->part.end - march->t) * ringing > MAX_PHASE &&
                       fc_body_stuck_start(march->plane, march->body, &march->at, march->t, &march->stuck);
     if (march->is_known && take_free_time(march)) {
         return true;
@@ -547,11 +547,11 @@ static bool march_part(March* march, double end) {
     int stalled = 0;
     while (march->t < end) {
         const double before = march->t;
-        if (!take_panel(march) || march->solves * STAGES > FC_MOST_EVALUATIONS) {
+        if (!take_panel(march) || march->solves * STAGES > FC_MAX_EVALUATIONS) {
             return false;
         }
         stalled = march->t - before > 1e-15 * end ? 0 : stalled + 1;
-        if (stalled > MOST_STALLED) {
+        if (stalled > MAX_STALLED) {
             return false;
         }
     }

@@ -8,7 +8,7 @@
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
 // The largest number of iterations of Newton's method. Chosen empirically, as in slip_panel.c.
-enum { MOST_ITERATIONS = 12 };
+enum { MAX_ITERATIONS = 12 };
 
 // g at the velocity w, and its slope by w.
 typedef struct {
@@ -121,7 +121,7 @@ FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const 
             w[i] = velocity.free[i] + nodes->V[i];
         }
     }
-    for (int tries = 0; tries <= MOST_ITERATIONS; tries++) {
+    for (int tries = 0; tries <= MAX_ITERATIONS; tries++) {
         const bool is_first = relaxes && tries == 0; // with the guessed velocities, which do not follow e
         double by_w[STAGES];                         // of delta' tau
         double z[STAGES];
@@ -153,7 +153,7 @@ FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const 
         double step = 0.0; // N
         for (int i = 0; i < STAGES; i++) {
             e[i] += row[i][FC_FIRST];
-            step = fc_most(step, fabs(row[i][FC_FIRST]) * nodes->sigma[i]);
+            step = fc_max(step, fabs(row[i][FC_FIRST]) * nodes->sigma[i]);
         }
         for (int i = 0; i < STAGES; i++) {
             panel->v[i] = velocity.free[i] - fc_dot(POINTS, velocity.slope[i], e);
@@ -184,7 +184,7 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
     for (int i = 0; i < STAGES; i++) {
         panel->v[i] = start->v;
     }
-    for (int tries = 0; tries < MOST_ITERATIONS; tries++) {
+    for (int tries = 0; tries < MAX_ITERATIONS; tries++) {
         double z[STAGES];
         double moved[STAGES]; // m (v - v_0) + sigma_1 (delta - delta_0)
         double by_v[STAGES];  // of that, over m
@@ -213,7 +213,7 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
         double step = 0.0; // m/s
         for (int i = 0; i < STAGES; i++) {
             panel->v[i] += row[i][FC_FIRST];
-            step = fc_most(step, fabs(row[i][FC_FIRST]));
+            step = fc_max(step, fabs(row[i][FC_FIRST]));
         }
         if (!isfinite(step)) {
             return false;
@@ -256,7 +256,7 @@ FcBodyRates fc_body_rates(const FcPlane* plane, const FcBody* body, const FcBody
         }
         of.inertia = 1.0 + friction->sigma_1 * by_w / body->m;
         of.v = (F - at->side * bound.g - friction->sigma_1 * delta) /
-               (body->m * fc_most(of.inertia, FC_LEAST_INERTIA));
+               (body->m * fc_max(of.inertia, FC_MIN_INERTIA));
         of.delta = delta + by_w * of.v;
         of.push = at->side * (w - of.delta) - of.relaxation * D;
     }

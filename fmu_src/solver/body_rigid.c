@@ -29,7 +29,7 @@ static const double ROUNDING = 1e-13;
 
 // An inaccurate panel is shortened by this factor, at most so often; others change the number of tries.
 static const double SHORTENED = 0.7;
-enum { MOST_TRIES = 60 };
+enum { MAX_TRIES = 60 };
 
 // The part of a period that a panel goes through at the most: its polynomial of w is then right to 1e-10 of V_1.
 static const double OF_PERIOD = 0.3;
@@ -109,7 +109,7 @@ static void make_stick(const Rigid* of, double h, Panel* panel) {
         const double limit = limit_at(of, t);
         panel->F_t[i] = holding_force(of, t);
         panel->to_end[i] = (limit - panel->F_t[i]) * (limit + panel->F_t[i]);
-        largest = fc_most(largest, limit);
+        largest = fc_max(largest, limit);
     }
     panel->h = h;
     panel->error = fc_radau_quadrature_error(panel->to_end) / largest;
@@ -177,13 +177,13 @@ static double take_accurate(const Rigid* of, double* length, Panel* panel, doubl
     for (int tries = 0;; tries++) {
         make(of, *length, panel);
         *evaluations += FC_STAGES;
-        if (FC_SAFETY * panel->error > of->allowed && tries < MOST_TRIES) {
+        if (FC_SAFETY * panel->error > of->allowed && tries < MAX_TRIES) {
             *length *= SHORTENED;
             continue;
         }
         bool rose = true;
         const double part = of->is_loose ? 1.0 : first_fall(panel->to_end, &rose);
-        if (rose || tries >= MOST_TRIES) {
+        if (rose || tries >= MAX_TRIES) {
             return part;
         }
         *length /= FC_SAMPLES;
@@ -220,7 +220,7 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
     const double limit = limit_at(&of, 0.0);
     const double force = holding_force(&of, 0.0);
     *sticks = fabs(force) < limit;
-    return fc_most(-limit, fc_least(limit, force));
+    return fc_max(-limit, fc_min(limit, force));
 }
 
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
@@ -228,11 +228,11 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
     assert(h >= 0.0 && body->m > 0.0 && (scene->friction->model == FC_COULOMB || fc_scene_is_loose(scene)));
     const FcScene seen = fc_body_scene(scene, body, (FcBristle){0});
     const double w = fc_drive_V(&seen.drive, 0.0);
-    const double F = fc_most(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
+    const double F = fc_max(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
     Rigid of = {.scene = scene,
                 .body = body,
                 .is_loose = fc_scene_is_loose(scene),
-                .allowed = fc_most(SHARE * options->tolerance * options->largest,
+                .allowed = fc_max(SHARE * options->tolerance * options->largest,
                                    ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
                 .v = body->v};
     of.side = of.is_loose ? 0 : w < 0.0 ? -1 : 1;
@@ -246,14 +246,14 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
     double next = longest;
     while (of.t < h) {
         const double rest = h - of.t;
-        double length = fc_least(fc_least(next, longest), rest);
+        double length = fc_min(fc_min(next, longest), rest);
         Panel panel;
         const double part = take_accurate(&of, &length, &panel, &result->evaluations);
-        if (result->evaluations > FC_MOST_EVALUATIONS || length == 0.0) { // by underflow
+        if (result->evaluations > FC_MAX_EVALUATIONS || length == 0.0) { // by underflow
             return fc_message_set(message, "body.m = %.9g kg: the step needs more than %.0e evaluations",
-                                  body->m, FC_MOST_EVALUATIONS);
+                                  body->m, FC_MAX_EVALUATIONS);
         }
-        next = length * fc_least(4.0, pow(of.allowed / (FC_SAFETY * panel.error + DBL_MIN), 1.0 / 16.0));
+        next = length * fc_min(4.0, pow(of.allowed / (FC_SAFETY * panel.error + DBL_MIN), 1.0 / 16.0));
         if (part < 1.0 && of.sticks) {
             panel.h = part * length;
         } else if (part < 1.0) {

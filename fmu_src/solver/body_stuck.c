@@ -8,7 +8,7 @@
 
 // The largest |Z|, over the radius of the bound. Chosen empirically: ten times of it loses a digit near resonance, where panels
 // keep it; a tenth costs time there.
-static const double MOST_DRIVEN = 1e3;
+static const double MAX_DRIVEN = 1e3;
 
 bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyStart* at, double t,
                          FcBodyStuck* stuck) {
@@ -24,7 +24,7 @@ bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyS
     const FcPlaneCoefficients now = fc_plane_coefficients(plane, t, phase);
     const double driven = body->m * drive->vibration.V_1 * drive->omega; // N
     const double stiffness = now.sigma - body->m * drive->omega * drive->omega;
-    if (fabs(driven) * now.sigma > MOST_DRIVEN * now.static_limit * fabs(stiffness)) {
+    if (fabs(driven) * now.sigma > MAX_DRIVEN * now.static_limit * fabs(stiffness)) {
         return false;
     }
     *stuck = (FcBodyStuck){.A = (fc_input_after(body->F, t) + body->m * drive->V.rate) / now.sigma,

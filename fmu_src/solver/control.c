@@ -14,7 +14,7 @@
 // with sinh(ln rho) = pi over the panel's length.
 static const double ORDER = 17.0;
 // Derived: a Legendre tail of 1e-13 of the force is its rounding, so a transient above e^30 tolerances needs no shorter panels.
-static const double MOST_BEHIND = 30.0;
+static const double MAX_BEHIND = 30.0;
 // Rounding of a panel's force, over the limit: 900 eps. A smaller error would only shorten panels.
 static const double ROUNDING_OF_PANEL = 2e-13;
 
@@ -26,7 +26,7 @@ static inline double rough_log(double x) {
 }
 
 static inline double rough_exp(double x) {
-    const double power = fc_most(-700.0, fc_least(700.0, x)) * 1.4426950408889634;
+    const double power = fc_max(-700.0, fc_min(700.0, x)) * 1.4426950408889634;
     const int64_t bits = (int64_t)((power + (1023.0 - 0.043)) * 4503599627370496.0);
     double y;
     memcpy(&y, &bits, sizeof y);
@@ -40,7 +40,7 @@ static inline double sinh_of_small(double x) {
 
 // The longest panel in u for a function entire in t, to that part of its size: the strip of sinh(u) is pi / 2.
 static double longest_for(double part) {
-    return FC_PI / sinh_of_small(fc_most(0.01, -rough_log(part)) / ORDER);
+    return FC_PI / sinh_of_small(fc_max(0.01, -rough_log(part)) / ORDER);
 }
 
 void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval* interval,
@@ -51,7 +51,7 @@ void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval
     control->log_transient = transient > 0.0 ? rough_log(transient / allowed) : -HUGE_VAL;
     control->log_force = interval->force > 0.0 ? rough_log(interval->force / allowed) : 0.0;
     control->span =
-        FC_SMOOTH * rough_exp(rough_log(interval->tolerance) / ORDER) * fc_smooth_time(&interval->pace);
+        FC_MAX_PHASE * rough_exp(rough_log(interval->tolerance) / ORDER) * fc_smooth_time(&interval->pace);
     control->longest = longest_for(interval->tolerance);
     control->settles = plane->on_line && fc_scene_limit_is_constant(interval->scene) &&
                        !fc_has_stribeck_curve(interval->scene->friction);
@@ -77,7 +77,7 @@ static bool is_relaxing(const FcControl* control, FcKind kind) {
 static double lag_for(const FcControl* control, const FcStraight* in, double rate) {
     const double pace = control->interval->pace.log_sigma;
     const double relaxation = rate > 1.0 / DBL_MAX ? 1.0 / rate : INFINITY; // s
-    return pace > 0.0 ? pace * fc_least(relaxation, in->length) : 0.0;
+    return pace > 0.0 ? pace * fc_min(relaxation, in->length) : 0.0;
 }
 
 // ln of the transient over the allowed error: the rest of the start's, and behind a reversal that of the force, which
@@ -86,9 +86,9 @@ static double transient_at(const FcControl* control, const FcPart* part, const F
     const double x = at->t - part->in.center;
     double behind = control->log_transient;
     if (isfinite(part->in.length) && part->in.center >= 0.0 && x >= 0.0) {
-        behind = fc_most(behind, control->log_force - 0.5 * at->rate * x);
+        behind = fc_max(behind, control->log_force - 0.5 * at->rate * x);
     }
-    return fc_least(behind, MOST_BEHIND);
+    return fc_min(behind, MAX_BEHIND);
 }
 
 // The part of the force that is not smooth in t, over the force: a transient, the lag behind sigma and g, and the Stribeck
@@ -101,13 +101,13 @@ static double part_not_smooth(const FcControl* control, const FcReached* at, FcK
     }
     double part = 0.0;
     if (kind == FC_RELAXES) {
-        part = behind > 0.0 ? fc_most(lag, rough_exp(fc_least(0.0, behind - control->log_force))) : lag;
+        part = behind > 0.0 ? fc_max(lag, rough_exp(fc_min(0.0, behind - control->log_force))) : lag;
     }
     if (fc_has_stribeck_curve(friction) && kind != FC_STICKS) {
-        const double V = fc_least(at->rate / at->per_path, V_end) / friction->V_S;
-        part = fc_most(part, (friction->staticRatio - 1.0) * rough_exp(-V * V));
+        const double V = fc_min(at->rate / at->per_path, V_end) / friction->V_S;
+        part = fc_max(part, (friction->staticRatio - 1.0) * rough_exp(-V * V));
     }
-    return fc_least(1.0, part);
+    return fc_min(1.0, part);
 }
 
 // The length in u up to which a graded panel is smooth, and resolves what is not smooth in t.
@@ -116,20 +116,20 @@ static double graded_length(const FcControl* control, const FcPart* part, const 
     const FcInterval* interval = control->interval;
     const FcStraight* in = &part->in;
     const double x = at->t - in->center;
-    h = fc_least(h, length_of_span(in, x, span));
-    h = fc_least(h, fc_least(FC_LONGEST, longest));
+    h = fc_min(h, length_of_span(in, x, span));
+    h = fc_min(h, fc_min(FC_MAX_LENGTH_U, longest));
     // The end of the panel, and |V| there at the most.
     const double grown = 0.5 * in->length * rough_exp(at->u + h);
     const double x_end = grown - 0.25 * in->length * in->length / grown;
     const double V_end = fc_part_speed(part, x_end);
     const double rate_end = at->per_path * V_end;
     const double acts =
-        is_relaxing(control, kind) ? fc_least(1.0, 0.5 * (at->rate + rate_end) * (x_end - x)) : 1.0;
-    const double lag = lag_for(control, in, fc_least(at->rate, rate_end));
+        is_relaxing(control, kind) ? fc_min(1.0, 0.5 * (at->rate + rate_end) * (x_end - x)) : 1.0;
+    const double lag = lag_for(control, in, fc_min(at->rate, rate_end));
     const double counts = FC_SAFETY * acts * part_not_smooth(control, at, kind, behind, lag, V_end) *
                           (x_end - x) / (interval->duration * interval->tolerance);
     const double strip = part->narrow * FC_PART_OF_STRIP * FC_PI;
-    return counts > 0.0 ? fc_least(h, strip / sinh_of_small(rough_log(1.0 + counts) / ORDER)) : h;
+    return counts > 0.0 ? fc_min(h, strip / sinh_of_small(rough_log(1.0 + counts) / ORDER)) : h;
 }
 
 double fc_control_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
@@ -144,22 +144,22 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     double span = control->span;
     double longest = control->longest;
     if (kind == FC_STICKS && at->per_path > 0.0) {
-        span = fc_least(span, fc_time_to_move(at->rate / at->per_path, part->most.of[1],
-                                              FC_MOST_OF_BOUND / at->per_path));
+        span = fc_min(span, fc_time_to_move(at->rate / at->per_path, part->most.of[1],
+                                              FC_MAX_RADII / at->per_path));
     } else if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
         // A settled force is constant but for its lag, and the integrals of the constant are exact.
         const double lag = lag_for(control, in, x < 0.0 ? 0.0 : at->rate);
-        const double part_of_lag = fc_most(control->interval->tolerance, fc_least(1.0, lag));
+        const double part_of_lag = fc_max(control->interval->tolerance, fc_min(1.0, lag));
         span *= rough_exp(-rough_log(part_of_lag) / ORDER);
         longest = longest_for(control->interval->tolerance / part_of_lag);
     }
-    double h = proposed > 0.0 ? fc_least(left, proposed) : left;
-    h = isinf(in->length) ? fc_least(h, span)
+    double h = proposed > 0.0 ? fc_min(left, proposed) : left;
+    h = isinf(in->length) ? fc_min(h, span)
                           : graded_length(control, part, at, kind, behind, span, longest, h);
     if (z < INFINITY && at->rate > 0.0) { // |V| may grow as e^u
         const double straight = z / at->rate;
         const double grows = isinf(in->length) ? 0.0 : 2.0 * straight / sqrt(in->length * in->length + x * x);
-        h = fc_least(h, isinf(in->length) ? straight
+        h = fc_min(h, isinf(in->length) ? straight
                         : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
                                           : 0.5 * rough_log(1.0 + grows));
     }
@@ -175,28 +175,28 @@ double fc_control_excess(const FcControl* control, const FcPart* part, const FcN
     const double length = part->in.length;
     const double forgets =
         panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
-    const double lives = fc_most(0.0, fc_least(interval->duration - end, forgets)) / interval->duration;
-    const double lasts = fc_least(1.0, nodes->duration / interval->duration); // the nodes' times are rounded
-    const double end_error = panel->end_error * fc_most(1.0, interval->stiffness / panel->sigma);
+    const double lives = fc_max(0.0, fc_min(interval->duration - end, forgets)) / interval->duration;
+    const double lasts = fc_min(1.0, nodes->duration / interval->duration); // the nodes' times are rounded
+    const double end_error = panel->end_error * fc_max(1.0, interval->stiffness / panel->sigma);
     const double mean_error = end_error * lives + panel->mean_error * lasts;
     const double rounding = ROUNDING_OF_PANEL * panel->limit;
     // Heat is the force times the way and the change of the deflection: in a curve, whose coefficients fall late, a short panel
     // of a relaxing bristle may err by a part of its change alone.
     const FcFriction* friction = interval->scene->friction;
     const double V =
-        fc_least(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
+        fc_min(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
     const bool in_curve =
         friction->model == FC_LUGRE && (friction->staticRatio - 1.0) * exp(-V * V) > interval->tolerance;
     const double path = interval->speed * interval->duration / interval->saturation;
-    const double whole = allowed * (in_curve ? fc_least(1.0, fc_most(panel->z, path)) : 1.0);
-    *of_end = FC_SAFETY * end_error / fc_most(FC_SHARE_OF_END * whole, rounding);
-    return FC_SAFETY * mean_error / fc_most(FC_SHARE_OF_MEAN * whole, rounding);
+    const double whole = allowed * (in_curve ? fc_min(1.0, fc_max(panel->z, path)) : 1.0);
+    *of_end = FC_SAFETY * end_error / fc_max(FC_SHARE_OF_END * whole, rounding);
+    return FC_SAFETY * mean_error / fc_max(FC_SHARE_OF_MEAN * whole, rounding);
 }
 
 double fc_control_shortens(double excess) {
-    return isfinite(excess) ? fc_most(0.3, fc_least(0.9, 0.9 * pow(excess, -1.0 / ORDER))) : 0.4;
+    return isfinite(excess) ? fc_max(0.3, fc_min(0.9, 0.9 * pow(excess, -1.0 / ORDER))) : 0.4;
 }
 
 double fc_control_grows(double excess) {
-    return excess > 0.0 ? fc_least(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 2.0;
+    return excess > 0.0 ? fc_min(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 2.0;
 }

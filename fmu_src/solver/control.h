@@ -27,7 +27,7 @@ typedef struct {
 } FcControl;
 
 // A panel that was refused so often in a row is accepted: 0.3^12 of its length, at which rounding limits it.
-enum { FC_MOST_TRIES = 12 };
+enum { FC_MAX_REJECTIONS = 12 };
 
 // transient [N]: of the start.
 void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval* interval, double transient);

@@ -17,7 +17,7 @@ double fc_straight_pace(const FcStraight* in, double u) {
 }
 
 double fc_part_time(const FcPart* part, double u) {
-    return fc_least(fc_most(fc_straight_time(&part->in, u), part->start), part->end);
+    return fc_min(fc_max(fc_straight_time(&part->in, u), part->start), part->end);
 }
 
 double fc_straight_place(const FcStraight* in, double t) {
@@ -49,7 +49,7 @@ static double twist_of_square(void* drive, double t) { return sample_at(drive, t
 
 // The number of samples in a period. Derived: the rate of |V|^2 has two harmonics, and its bend turns at most once
 // between two samples that are cut where its twist changes sign.
-enum { SAMPLES = 16, MOST_CENTERS = 8 };
+enum { SAMPLES = 16, MAX_CENTERS = 8 };
 
 // Whether |V| has a minimum where its square bends up, between two samples; its time [s] in *center. At a maximum the rate
 // may be exactly 0, but the square bends down.
@@ -76,7 +76,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
 }
 
 // The times [s] of the minima of |V| in and beside [0, h].
-static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
+static int minima(const FcDrive* of, double h, double times[MAX_CENTERS]) {
     FcDrive drive = *of;
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
@@ -88,7 +88,7 @@ static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
     }
     const double period = 1.0 / drive.vibration.f;
     Sample a = sample_at(&drive, -0.5 * period);
-    while (a.t < h + 0.5 * period && count < MOST_CENTERS - 1) { // two may follow
+    while (a.t < h + 0.5 * period && count < MAX_CENTERS - 1) { // two may follow
         const Sample b = sample_at(&drive, a.t + period / SAMPLES);
         // Between two minima it bends down, most where the twist changes sign.
         if (a.twist < 0.0 && b.twist > 0.0) {
@@ -142,7 +142,7 @@ static double time_of_power(double a, int n, double change) {
 static double time_of_change(const FcMost* most, double change) {
     double least = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        least = fc_least(least, time_of_power(most->of[n], n, change));
+        least = fc_min(least, time_of_power(most->of[n], n, change));
     }
     return least;
 }
@@ -164,9 +164,9 @@ static double length_of_layer(const FcPlane* plane, const FcMost* most, double p
     }
     double layer = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        layer = fc_least(layer, time_of_power(most->of[n], n + 1, (n + 1) * path));
+        layer = fc_min(layer, time_of_power(most->of[n], n + 1, (n + 1) * path));
     }
-    return fc_most(*eps, of_layer * fc_least(layer, h));
+    return fc_max(*eps, of_layer * fc_min(layer, h));
 }
 
 // The center at a time, which may be beside [0, h]. A reversal, or what is taken for one ahead of the start, has |V| = 0.
@@ -179,7 +179,7 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     if (is_reversal) {
         of.most.of[0] = 0.0;
     }
-    const double inside = fc_least(fc_most(time, 0.0), h);
+    const double inside = fc_min(fc_max(time, 0.0), h);
     const FcPlaneCoefficients near =
         fc_plane_coefficients(plane, inside, fc_drive_phase(&scene->drive, inside));
     double eps;
@@ -190,19 +190,19 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     const double V_S = scene->friction->V_S;
     const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.most.of[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
-        const double of_curve = fc_most(time_of_change(&of.most, V_S), plane->on_line ? 0.0 : eps);
+        const double of_curve = fc_max(time_of_change(&of.most, V_S), plane->on_line ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
             of.edge = time_of_change(&of.most, FC_END_OF_CURVE * V_S);
         }
-        of.length = fc_least(of.length, of_curve);
+        of.length = fc_min(of.length, of_curve);
     }
     if (isfinite(of.length)) { // a transient goes as e^(-x^(n + 1)), the curve as e^(-x^2n)
         const int n = order_at(&of.most, of.length);
         of.narrow_beyond = 2.0 / (n + 1.0);
         of.narrow = has_curve ? 1.0 / n : of.narrow_beyond;
-        const double least = 0x1p-40 * fc_most(h, fabs(time)); // rounding of the times
-        of.length = fc_most(of.length, least);
-        of.beyond = fc_most(of.beyond, least);
+        const double least = 0x1p-40 * fc_max(h, fabs(time)); // rounding of the times
+        of.length = fc_max(of.length, least);
+        of.beyond = fc_max(of.beyond, least);
     }
     return of;
 }
@@ -211,19 +211,19 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
 static const double ROUNDING_OF_V = 1e-13;
 
 // The centers along a line, in and beside [0, h], in their order.
-static int line_centers(const FcPlane* plane, double h, double tolerance, Center centers[MOST_CENTERS]) {
+static int line_centers(const FcPlane* plane, double h, double tolerance, Center centers[MAX_CENTERS]) {
     const FcDrive* drive = &plane->scene->drive;
     int count = 0;
     // Behind the start, if |V| grows there.
     const FcVelocity now = fc_drive_velocity(drive, 0.0);
-    const double behind = -fc_least(time_of_power(fabs(now.rate), 1, fabs(now.V)),
+    const double behind = -fc_min(time_of_power(fabs(now.rate), 1, fabs(now.V)),
                                     time_of_power(0.5 * fabs(now.curvature), 2, fabs(now.V)));
     const bool is_reversal = fabs(now.V) <= ROUNDING_OF_V * (fabs(drive->V.value) + drive->vibration.V_1);
     const bool grows = now.V * now.rate > 0.0 || (now.rate == 0.0 && now.V * now.curvature > 0.0);
     if (is_reversal || (grows && behind > -h)) {
         centers[count++] = center_at(plane, is_reversal ? 0.0 : behind, 0.0, true, h, tolerance);
     }
-    for (double t = 0.0; t < h && count < MOST_CENTERS;) {
+    for (double t = 0.0; t < h && count < MAX_CENTERS;) {
         const double horizon = h + (h - t);
         const FcDriveEvent event = fc_drive_next_event(drive, t, horizon);
         if (!(event.time < horizon)) {
@@ -235,8 +235,8 @@ static int line_centers(const FcPlane* plane, double h, double tolerance, Center
     return count;
 }
 
-static int plane_centers(const FcPlane* plane, double h, double tolerance, Center centers[MOST_CENTERS]) {
-    double times[MOST_CENTERS];
+static int plane_centers(const FcPlane* plane, double h, double tolerance, Center centers[MAX_CENTERS]) {
+    double times[MAX_CENTERS];
     const int found = minima(&plane->scene->drive, h, times);
     int count = 0;
     for (int i = 0; i < found; i++) {
@@ -265,7 +265,7 @@ static FcPart part_of(double start, double end, const Center* center, bool is_be
 }
 
 // A part on one side of its center, in two if a Stribeck curve ends in it.
-static int add_part(FcPart parts[FC_MOST_PARTS], int count, double start, double end, const Center* center,
+static int add_part(FcPart parts[FC_MAX_PARTS], int count, double start, double end, const Center* center,
                     int side) {
     const bool is_ahead = center->time >= end;
     const double edge = is_ahead ? center->time - center->edge : center->time + center->edge;
@@ -284,7 +284,7 @@ static int add_part(FcPart parts[FC_MOST_PARTS], int count, double start, double
 static Center seen_from_gap(const Center* center, double start, double end) {
     Center of = center ? *center : NONE;
     const double gap = end - start;
-    if (!(of.length < gap) || fc_most(start - of.time, of.time - end) > gap) {
+    if (!(of.length < gap) || fc_max(start - of.time, of.time - end) > gap) {
         of.length = of.beyond = of.edge = INFINITY;
     }
     of.beyond = of.beyond < gap ? of.beyond : INFINITY;
@@ -292,7 +292,7 @@ static Center seen_from_gap(const Center* center, double start, double end) {
 }
 
 // The parts between two centers, either of which may be missing: from each to the middle between both.
-static int add_gap(const FcPlane* plane, FcPart parts[FC_MOST_PARTS], int count, double start, double end,
+static int add_gap(const FcPlane* plane, FcPart parts[FC_MAX_PARTS], int count, double start, double end,
                    double h, const Center* before, const Center* after) {
     const Center left = seen_from_gap(before, start, end);
     const Center right = seen_from_gap(after, start, end);
@@ -300,7 +300,7 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MOST_PARTS], int count,
     const int side = plane->on_line ? (V > 0.0) - (V < 0.0) : 0;
     double middle = isinf(right.length)  ? end
                     : isinf(left.length) ? start
-                                         : fc_least(fc_most(0.5 * (left.time + right.time), start), end);
+                                         : fc_min(fc_max(0.5 * (left.time + right.time), start), end);
     middle = middle - start < ROUNDING * h ? start : end - middle < ROUNDING * h ? end : middle;
     if (middle > start) {
         count = add_part(parts, count, start, middle, &left, side);
@@ -311,16 +311,16 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MOST_PARTS], int count,
     return count;
 }
 
-int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MOST_PARTS]) {
+int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MAX_PARTS]) {
     assert(h > 0.0 && tolerance > 0.0);
-    Center centers[MOST_CENTERS];
+    Center centers[MAX_CENTERS];
     const int found = plane->on_line ? line_centers(plane, h, tolerance, centers)
                                      : plane_centers(plane, h, tolerance, centers);
     int count = 0;
     double start = 0.0;
-    for (int i = 0; i <= found && start < h && count + 4 <= FC_MOST_PARTS; i++) {
+    for (int i = 0; i <= found && start < h && count + 4 <= FC_MAX_PARTS; i++) {
         const bool has_after = i < found;
-        const double end = has_after ? fc_least(fc_most(centers[i].time, start), h) : h;
+        const double end = has_after ? fc_min(fc_max(centers[i].time, start), h) : h;
         if (end - start > (plane->on_line ? SAME_TIME : ROUNDING) * h) {
             count = add_gap(plane, parts, count, start, end, h, i > 0 ? &centers[i - 1] : NULL,
                             has_after ? &centers[i] : NULL);
@@ -330,6 +330,6 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
     if (count > 0) {
         parts[count - 1].end = h; // of rounding, and of more centers than there is room for
     }
-    assert(count > 0 && count <= FC_MOST_PARTS);
+    assert(count > 0 && count <= FC_MAX_PARTS);
     return count;
 }

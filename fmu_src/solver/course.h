@@ -50,10 +50,10 @@ static inline double fc_part_speed(const FcPart* part, double x) {
 }
 
 // Room for two centers a period over less than three periods, with up to four parts each.
-enum { FC_MOST_PARTS = 40 };
+enum { FC_MAX_PARTS = 40 };
 
 // Finds the parts of [0, h], in their order; returns their number. If the scene vibrates, h [s] > 0 is less than
 // two periods.
-int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MOST_PARTS]);
+int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MAX_PARTS]);
 
 #endif

@@ -116,7 +116,7 @@ static double least_path(const FcCrossing* crossing, const FcPart* part, double 
     if (crossing->plane->on_line) {
         return fabs(fc_drive_displacement(drive, start, end));
     }
-    const double turn = fc_least(fc_most(part->in.center, start), end);
+    const double turn = fc_min(fc_max(part->in.center, start), end);
     return hypot(fc_drive_displacement(drive, start, turn),
                  fc_drive_displacement(&crossing->across, start, turn)) +
            hypot(fc_drive_displacement(drive, turn, end),
@@ -178,7 +178,7 @@ static double excess_of(FcCrossing* crossing, const FcNodes* nodes, const FcPane
     if (of_end > 1.0 && of_end > of_mean) { // the path is found only if it decides
         of_end *= exp(-fc_path_left(crossing, nodes->t[LAST]) / crossing->interval->saturation);
     }
-    return fc_most(of_mean, of_end);
+    return fc_max(of_mean, of_end);
 }
 
 double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
@@ -188,7 +188,7 @@ double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
     for (int tries = 0;; tries++) {
         const bool is_solved = fc_make_panel(crossing, h, nodes, panel);
         const double excess = is_solved ? excess_of(crossing, nodes, panel) : HUGE_VAL;
-        if ((is_solved && excess <= 1.0) || tries >= FC_MOST_TRIES) {
+        if ((is_solved && excess <= 1.0) || tries >= FC_MAX_REJECTIONS) {
             if (!is_solved) {
                 crossing->along.offset = NAN;
             }
@@ -209,7 +209,7 @@ void fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel,
     }
     fc_map_append(&crossing->along, &panel->along);
     fc_map_append(&crossing->across_map, &panel->across);
-    crossing->control.log_transient -= fc_most(0.0, panel->z);
+    crossing->control.log_transient -= fc_max(0.0, panel->z);
     const double kept = crossing->plane->on_line ? 1.0 : exp(-panel->z); // of a deviation
     for (int k = 0; k < 2; k++) {
         crossing->by_start[k].x *= kept;

@@ -40,8 +40,8 @@ typedef struct {
 
 // The memory of the parts of a crossing, which is filled as far as there are any.
 typedef struct {
-    FcPart parts[FC_MOST_PARTS];
-    double way[FC_MOST_PARTS];
+    FcPart parts[FC_MAX_PARTS];
+    double way[FC_MAX_PARTS];
 } FcRoom;
 
 // A crossing of the interval from its start on, with its parts, or in one part; the bristle is to be set.
@@ -72,7 +72,7 @@ void fc_make_again(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* pane
 
 // Makes the next panel, as long as it is accurate; returns its length in u.
 // - It is planned, made and judged, and shortened until its errors are small enough.
-// - After FC_MOST_TRIES of them it is accepted. If it could not be solved, the deflection becomes no number, for which
+// - After FC_MAX_REJECTIONS of them it is accepted. If it could not be solved, the deflection becomes no number, for which
 //   the step is refused.
 double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel);
 

@@ -41,10 +41,10 @@
 #define STRIBECK_STEP 0.25
 
 // The states: the deflection, and the integrals of FcStepResult; with a mass what F_t adds to its position.
-enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, POSITION, MOST_STATES };
+enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, POSITION, MAX_STATES };
 
 // Indicators of events: those of a regime; with a mass w, and the slope of F_t over the rate of w.
-enum { OF_REGIME = 0, REVERSAL = 2, JUMP = 3, MOST_INDICATORS = 4 };
+enum { OF_REGIME = 0, REVERSAL = 2, JUMP = 3, MAX_INDICATORS = 4 };
 
 struct FcCvode {
     SUNContext context;
@@ -76,14 +76,14 @@ static double* state(FcCvode* solver, FcStepResult* of, int k) {
 }
 
 // CVODE refuses 0, and squares what an error is over it.
-static const double LEAST_ALLOWED = 1e-100;
+static const double MIN_ALLOWED = 1e-100;
 
 // The shortest communication step [s]: CVODE multiplies steps with each other, and numbers below 1e-308 take it long.
 static const double SHORTEST = 1e-50;
 
 // The largest number of evaluations in a communication step, a second of computing: each makes a scene.
-static const double MOST_EVALUATIONS = 2e5;
-static const double MOST_EVALUATIONS_OF_BODY = 4e5;
+static const double MAX_EVALUATIONS = 2e5;
+static const double MAX_EVALUATIONS_OF_BODY = 4e5;
 
 static bool has_body(const FcCvode* solver) { return solver->states > POSITION; }
 
@@ -119,7 +119,7 @@ static FcBristle bristle_of(const FcCvode* solver, N_Vector y) {
 }
 
 // Of a motion, or of its derivative by the deflection.
-static void set_rates(const FcScene* now, const FcMotion* motion, double rate[MOST_STATES]) {
+static void set_rates(const FcScene* now, const FcMotion* motion, double rate[MAX_STATES]) {
     rate[DELTA] = motion->rates.delta;
     rate[DELTA_Y] = motion->rates.delta_y;
     rate[IMPULSE] = motion->force.x;
@@ -145,7 +145,7 @@ static void add_acceleration(const FcCvode* solver, double t, FcRegime regime, F
 static double inertia_of(const FcCvode* solver, FcRegime regime, FcBristle bristle, const FcScene* scene) {
     FcScene damped = *scene;
     damped.friction = solver->damped;
-    return fc_body_inertia(&damped, regime, bristle, &solver->body) / solver->body.m - FC_LEAST_INERTIA;
+    return fc_body_inertia(&damped, regime, bristle, &solver->body) / solver->body.m - FC_MIN_INERTIA;
 }
 
 static int right_hand_side(realtype tau, N_Vector y, N_Vector rates, void* user) {
@@ -249,7 +249,7 @@ static bool set_up(FcCvode* solver) {
     return CVodeSetErrHandlerFn(cvode, keep_reason, solver) == CV_SUCCESS &&
            CVodeInit(cvode, right_hand_side, 0.0, solver->y) == CV_SUCCESS &&
            CVodeSetUserData(cvode, solver) == CV_SUCCESS &&
-           CVodeRootInit(cvode, has_body(solver) ? MOST_INDICATORS : REVERSAL, indicators) == CV_SUCCESS &&
+           CVodeRootInit(cvode, has_body(solver) ? MAX_INDICATORS : REVERSAL, indicators) == CV_SUCCESS &&
            CVodeSetLinearSolver(cvode, solver->linear_solver, solver->matrix) == CVLS_SUCCESS &&
            CVodeSetJacFn(cvode, jacobian) == CVLS_SUCCESS;
 }
@@ -257,7 +257,7 @@ static bool set_up(FcCvode* solver) {
 FcCvode* fc_cvode_new(bool with_body, FcMessage* message) {
     FcCvode* solver = calloc(1, sizeof *solver);
     if (solver) {
-        solver->states = with_body ? MOST_STATES : POSITION;
+        solver->states = with_body ? MAX_STATES : POSITION;
     }
     if (solver && set_up(solver)) {
         return solver;
@@ -297,22 +297,22 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     const double path = (fc_drive_largest_speed(&drive, h) + options->force / stiffness / ring) * h;
     const double forgets =
         scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
-    double periods = fc_most(1.0, vibrations / fc_most(1.0, forgets));
+    double periods = fc_max(1.0, vibrations / fc_max(1.0, forgets));
     double energy = 1.0; // in errors of the force
     if (has_body(solver) && vibrations == 0.0) {
-        periods = fc_most(1.0, sqrt(h / (FC_TWO_PI * ring)));
+        periods = fc_max(1.0, sqrt(h / (FC_TWO_PI * ring)));
     } else if (has_body(solver)) {
-        energy = fc_least(1.0, periods / sqrt(fc_most(1.0, vibrations)));
+        energy = fc_min(1.0, periods / sqrt(fc_max(1.0, vibrations)));
     }
     const double fraction = has_body(solver) ? LOCAL_ERROR_FRACTION_OF_BODY : LOCAL_ERROR_FRACTION;
     const double force = fraction * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
     energy *= force * path;
-    const double impulse = force * fc_least(h, ring);
+    const double impulse = force * fc_min(h, ring);
     const double moved = has_body(solver) ? impulse * h / solver->body.m : 0.0;
     const double of[] = {delta, delta, impulse, force * h, energy, energy, delta * path / h, moved};
     for (int k = 0; k < solver->states; k++) {
-        NV_Ith_S(solver->allowed, k) = fc_most(of[k], LEAST_ALLOWED);
+        NV_Ith_S(solver->allowed, k) = fc_max(of[k], MIN_ALLOWED);
     }
 }
 
@@ -334,7 +334,7 @@ static double stribeck_step(const FcCvode* solver, double tau) {
         speed = fabs(fc_drive_V(&now.drive, 0.0));
         rate += solver->acceleration;
     }
-    const double change = fc_most(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
+    const double change = fc_max(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
     return rate > 0.0 ? change / rate : INFINITY;
 }
 
@@ -385,17 +385,17 @@ static double integrate_regime(FcCvode* solver, double duration) {
     snprintf(solver->reason, sizeof solver->reason, "%s", "too much work in one step");
     if (!(duration > 0.0) || CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSVtolerances(cvode, SMALLEST_LOCAL_ERROR, solver->allowed) != CV_SUCCESS ||
-        CVodeSetMaxStep(cvode, duration / fc_most(1.0, parts)) != CV_SUCCESS) {
+        CVodeSetMaxStep(cvode, duration / fc_max(1.0, parts)) != CV_SUCCESS) {
         return NAN;
     }
     double tau = 0.0;
     int flag = CV_SUCCESS;
     while (tau < duration && flag != CV_ROOT_RETURN) {
         const double step = stribeck_step(solver, tau);
-        CVodeSetStopTime(cvode, fc_least(tau + step, duration));
+        CVodeSetStopTime(cvode, fc_min(tau + step, duration));
         flag = CVode(cvode, duration, solver->y, &tau, CV_ONE_STEP);
         solver->evaluations += 1.0; // of the indicators
-        const double most = has_body(solver) ? MOST_EVALUATIONS_OF_BODY : MOST_EVALUATIONS;
+        const double most = has_body(solver) ? MAX_EVALUATIONS_OF_BODY : MAX_EVALUATIONS;
         if (flag >= 0 && solver->evaluations > most) {
             snprintf(solver->reason, sizeof solver->reason,
                      "it needs more than %.0e evaluations; use smaller steps or collocation", most);
@@ -455,7 +455,7 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
 bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                         FcBody* body, FcStepResult* result, FcMessage* message) {
     assert(solver && has_body(solver) && h >= 0.0 && options->tolerance > 0.0);
-    const double F = fc_most(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
+    const double F = fc_max(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
     solver->body = *body;
     solver->damped = scene->friction;
     solver->delta_0 = result->delta;

@@ -18,7 +18,7 @@ static const double LITTLE_PUSH = 1e-9;
 
 // The number of times in which a panel is cut at the same event. Derived: each cut leaves less than a tenth of the way
 // to it, or half of it.
-enum { MOST_CUTS = 40 };
+enum { MAX_CUTS = 40 };
 
 // ---- the push of a bristle that slips ----
 
@@ -28,7 +28,7 @@ static FcVector direction(FcVector delta) { return fc_direction(delta, (FcVector
 static double rounding_of_push(const FcCrossing* crossing, const double push[POINTS]) {
     double largest = fc_largest_push(crossing);
     for (int i = 0; i < POINTS; i++) {
-        largest = fc_most(largest, fabs(push[i]));
+        largest = fc_max(largest, fabs(push[i]));
     }
     return (crossing->is_stalled ? LITTLE_PUSH : ROUNDING_OF_PUSH) * largest;
 }
@@ -42,9 +42,9 @@ bool fc_falls_behind(const FcCrossing* crossing, FcVector n) {
         return push < 0.0;
     }
     const FcVelocity now = fc_drive_velocity(&interval->scene->drive, t);
-    const double time = fc_least(fc_smooth_time(&interval->pace),
+    const double time = fc_min(fc_smooth_time(&interval->pace),
                                  fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
-    return fc_push_at(&pushed, t + 1e-6 * fc_least(time, interval->duration - t)) < 0.0;
+    return fc_push_at(&pushed, t + 1e-6 * fc_min(time, interval->duration - t)) < 0.0;
 }
 
 // ---- the begin and the end of a slip ----
@@ -107,11 +107,11 @@ static double close_to_bound(const FcCrossing* crossing, double D) {
         distance += 4e-16 * fc_largest_push(crossing) * of_time;
     } else { // an excess over the bound costs heat, whose tolerance goes with the path
         const double allowed =
-            fc_least(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
-            fc_least(1.0, interval->speed * interval->duration / D);
-        distance = fc_most(distance, FC_SHARE_OF_EVENT * allowed);
+            fc_min(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
+            fc_min(1.0, interval->speed * interval->duration / D);
+        distance = fc_max(distance, FC_SHARE_OF_EVENT * allowed);
     }
-    return 2.0 * D * fc_least(distance, 1e-3 * D); // if D moves by decades, nothing is near it
+    return 2.0 * D * fc_min(distance, 1e-3 * D); // if D moves by decades, nothing is near it
 }
 
 // The part of a panel by which it may begin or end beside a top. Derived: |delta| is less by its square, 1e-12
@@ -182,7 +182,7 @@ static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, doubl
         a = b;
         at_a = f[i];
     }
-    return fc_most(meets, SHORTENED_BY);
+    return fc_max(meets, SHORTENED_BY);
 }
 
 // The place in a panel, over its length, after which that push is negative; 0 if it is nowhere positive, 2 if
@@ -213,7 +213,7 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
             cuts >= 4) { // a push of 0 at the end is decided by the motion after it
             return cuts > 0;
         }
-        *h *= fc_most(ends, LITTLE_PUSH);
+        *h *= fc_max(ends, LITTLE_PUSH);
         fc_make_again(crossing, *h, nodes, panel);
     }
 }
@@ -226,12 +226,12 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
 static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h, double* over) {
     bool is_cut = false;
     bool is_exact = false;
-    for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
+    for (int cuts = 0; cuts < MAX_CUTS; cuts++) {
         find_to_bound(crossing, nodes, panel);
         const FcPlaneCoefficients begin = fc_nodes_at(nodes, START);
         const double D_begin = fc_plane_radius(crossing->plane, &begin, crossing->slips);
         if (crossing->touches && panel->to_bound[START] <= 4.0 * FC_ROUNDING_OF_BOUND * D_begin * D_begin) {
-            panel->to_bound[START] = fc_least(panel->to_bound[START], 0.0); // by rounding it may begin beyond
+            panel->to_bound[START] = fc_min(panel->to_bound[START], 0.0); // by rounding it may begin beyond
         }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
         *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));
@@ -293,7 +293,7 @@ static void turn_derivatives(FcCrossing* crossing, FcVector start, FcVector end)
 static bool cut_at_end_of_push(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h,
                                double* ends) {
     const bool is_cut = *ends < 1.0;
-    for (int cuts = 0; cuts < MOST_CUTS && *ends > 0.0 && *ends < 1.0; cuts++) {
+    for (int cuts = 0; cuts < MAX_CUTS && *ends > 0.0 && *ends < 1.0; cuts++) {
         *h *= *ends;
         fc_make_again(crossing, *h, nodes, panel);
         *ends = end_of_push(crossing, panel->to_bound);

@@ -13,7 +13,7 @@
 #include "solver/method.h"
 #include "solver/pieces.h"
 
-// What a step takes of FC_MOST_EVALUATIONS (solver.h), at most; with a bound, at which each step makes a scene. Chosen
+// What a step takes of FC_MAX_EVALUATIONS (solver.h), at most; with a bound, at which each step makes a scene. Chosen
 // empirically, for the same time.
 #define OF_A_STEP 2.0
 #define OF_A_BOUNDED_STEP 5.0
@@ -28,9 +28,9 @@
 #define RK4_LIMIT 2.785293563405282
 
 // Samples of sigma |V| / g per vibration period: the largest one is within 0.1 % of the maximum, with half as
-// many within about 0.4 %. More than MOST_RATE_SAMPLES would take longer than the step.
+// many within about 0.4 %. More than MAX_RATE_SAMPLES would take longer than the step.
 #define SAMPLES_PER_PERIOD 256.0
-#define MOST_RATE_SAMPLES 1e6
+#define MAX_RATE_SAMPLES 1e6
 
 // The rates of the deflection and of the integrals of FcStepResult.
 typedef struct {
@@ -79,12 +79,12 @@ static double largest_rate(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     const bool vibrates = fc_drive_vibrates(drive);
     const double f = vibrates ? drive->vibration.f : 0.0;
-    const double span = fc_drive_is_linear(drive) || !vibrates ? h : fc_least(h, 1.0 / f);
-    const double samples = fc_least(ceil(SAMPLES_PER_PERIOD * fc_most(1.0, span * f)), MOST_RATE_SAMPLES);
+    const double span = fc_drive_is_linear(drive) || !vibrates ? h : fc_min(h, 1.0 / f);
+    const double samples = fc_min(ceil(SAMPLES_PER_PERIOD * fc_max(1.0, span * f)), MAX_RATE_SAMPLES);
     double largest = 0.0;
     for (double i = 0.0; i <= samples; i += 1.0) {
         const FcCoefficients at = fc_scene_coefficients(scene, span * (i / samples));
-        largest = fc_most(largest, fc_relaxation_rate(&at));
+        largest = fc_max(largest, fc_relaxation_rate(&at));
     }
     return largest;
 }
@@ -130,12 +130,12 @@ static void take_step(FcMethod method, const FcScene* scene, FcStepResult* y, do
     *start = end;
 }
 
-static double steps_in(double h, double size) { return fc_most(1.0, ceil(h / size - STEP_ROUNDING)); }
+static double steps_in(double h, double size) { return fc_max(1.0, ceil(h / size - STEP_ROUNDING)); }
 
 bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message) {
     const double steps = steps_in(h, size);
     const double most =
-        FC_MOST_EVALUATIONS / (fc_is_bounded(scene->friction) ? OF_A_BOUNDED_STEP : OF_A_STEP);
+        FC_MAX_EVALUATIONS / (fc_is_bounded(scene->friction) ? OF_A_BOUNDED_STEP : OF_A_STEP);
     return steps <= most ||
            fc_message_set(
                message,

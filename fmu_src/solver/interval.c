@@ -20,12 +20,12 @@ FcPace fc_pace(const FcScene* scene, double h) {
     const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
     const double by_decay = 2.0 * scene->at_E.decay;
     const double by_nearness = 3.0 / fc_scene_smallest_d(scene, h);
-    const double by_E = fabs(drive->E.rate) / fc_input_least(drive->E, h);
+    const double by_E = fabs(drive->E.rate) / fc_input_min(drive->E, h);
     pace.log_sigma = (by_decay + by_nearness) * d_rate + BY_E * by_E;
     if (scene->floats) {
         // d ln F_n / d ln E is below 2. Floating surfaces move by the change of ln F_n and of ln load, over
         // the decay.
-        const double load = fc_least(drive->load.value, fc_drive_load(drive, h));
+        const double load = fc_min(drive->load.value, fc_drive_load(drive, h));
         const double floating = (2.0 * by_E + fabs(drive->load.rate) / load) / scene->at_E.decay;
         pace.log_sigma += (by_decay + by_nearness) * floating;
     }
@@ -44,6 +44,6 @@ FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolve
                         .force = options->force / grows,
                         .speed = fc_drive_largest_speed(&scene->drive, duration),
                         .stiffness = stiffness,
-                        .saturation = fc_least(DBL_MAX, fc_scene_largest_saturation(scene, duration)),
+                        .saturation = fc_min(DBL_MAX, fc_scene_largest_saturation(scene, duration)),
                         .pace = fc_pace(scene, duration)};
 }

@@ -153,7 +153,7 @@ static void follow(Ramp* ramp, double a, double b) {
 static const double STEP_OF_LOG = 0.5;
 static const double FACTOR_OF_STEP = 1.65; // its exponential
 // The largest number of steps: more than there are from the smallest number to the largest.
-static const double MOST_STEPS = 1e4;
+static const double MAX_STEPS = 1e4;
 static const double STEP_OF_CURVE = 1.0 / 16.0;
 // The largest V over V_S with a curve: e^-49 of its peak remains.
 static const double END_OF_CURVE = 7.0;
@@ -165,13 +165,13 @@ static double next_place(const Ramp* ramp, double s, double step) {
     const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
     if (ramp->slips && drops(ramp) && change != 0.0) {
-        next = fc_least(
-            next, s + fc_most(STEP_OF_CURVE * V_S / FACTOR_OF_STEP, V - END_OF_CURVE * FACTOR_OF_STEP * V_S) /
+        next = fc_min(
+            next, s + fc_max(STEP_OF_CURVE * V_S / FACTOR_OF_STEP, V - END_OF_CURVE * FACTOR_OF_STEP * V_S) /
                           change);
         const double reversal = ramp->along_change != 0.0 ? -ramp->along / ramp->along_change : -1.0;
         next = reversal > s && reversal < next ? reversal : next;
     }
-    const double place = next < 1.0 - 1e-9 ? fc_most(next, s + 1e-9) : 1.0;
+    const double place = next < 1.0 - 1e-9 ? fc_max(next, s + 1e-9) : 1.0;
     assert(place > s && place <= 1.0);
     return place;
 }
@@ -183,7 +183,7 @@ static double step_from(const Ramp* ramp, double s) {
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
                          fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
                          fabs(ramp->log_V_S);
-    return (1.0 - s) / ceil(fc_least(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
+    return (1.0 - s) / ceil(fc_min(moves / STEP_OF_LOG, MAX_STEPS) + 1e-3);
 }
 
 // The next place to stop at after s, or the one before it at which D turns.

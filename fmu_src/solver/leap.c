@@ -40,7 +40,7 @@ static double to_kink(const FcScene* scene, double k) {
     for (size_t i = 0; i < sizeof kinks / sizeof *kinks && drive->V.rate != 0.0; i++) {
         const double at = (kinks[i] - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
         if (at > k) {
-            nearest = fc_least(nearest, floor(at - k));
+            nearest = fc_min(nearest, floor(at - k));
         }
     }
     return nearest;
@@ -54,7 +54,7 @@ double fc_leap(const FcScene* scene, const FcSolverOptions* options, double peri
     double tries_at = 0.0;
     double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
     double k = 0.0;
-    while (k < periods && total->evaluations <= FC_MOST_EVALUATIONS) {
+    while (k < periods && total->evaluations <= FC_MAX_EVALUATIONS) {
         bool slipped = false;
         if (is_bounded) { // the first period says whether it slips
             total->meetings = total->slip_side = 0;
@@ -62,7 +62,7 @@ double fc_leap(const FcScene* scene, const FcSolverOptions* options, double peri
             slipped = total->meetings > 0;
             k += 1.0;
         }
-        const double room = fc_least(longest, fc_least(periods - k, to_kink(scene, k)));
+        const double room = fc_min(longest, fc_min(periods - k, to_kink(scene, k)));
         // On a line periods begin at the bound, if the bristle slips along it for any time.
         const bool on_line = slipped && !is_planar && total->slip_side != 0;
         const bool forgets = slipped && !on_line;

@@ -13,19 +13,19 @@
 #include "solver/pieces.h"
 #include "solver/tuning.h"
 
-// FEWEST_POINTS, MOST_POINTS: the numbers of points of the interpolation. MOST_PART: the largest part of a
+// FEWEST_POINTS, MAX_POINTS: the numbers of points of the interpolation. MAX_PART: the largest part of a
 // block's periods that may be points. Chosen empirically: a block that needs more gains nothing. Half of them
 // refuses more blocks.
-enum { FEWEST_POINTS = 4, MOST_POINTS = 17 };
-static const double MOST_PART = 0.7;
+enum { FEWEST_POINTS = 4, MAX_POINTS = 17 };
+static const double MAX_PART = 0.7;
 // The largest accepted error at the last point but one, over that at the last. Chosen empirically: both are
 // seldom small by chance. Half of it costs points; three times of it let a work miss by 1.04 tolerances.
-static const double MOST_BEFORE = 10.0;
+static const double MAX_BEFORE = 10.0;
 
 // The number of parts of a block, or up to twice as many, between whose ends the bound is taken as linear; in each the
 // free bristle with the least room is followed. Chosen empirically: half of them may miss a meeting, twice as many cost
 // evaluations.
-enum { MOST_PARTS = 64 };
+enum { MAX_PARTS = 64 };
 // The room over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
 // it changes by a factor of up to 10 in the block.
 static const double NO_ROOM = 1e-3;
@@ -45,8 +45,8 @@ typedef struct {
     FcBristle start; // at the block
     double* evaluations;
     int numbers;                // of a map, or of two in the plane
-    double place[MOST_POINTS];  // of the points, in [-2, 2]
-    Numbers point[MOST_POINTS]; // Newton's coefficients: divided differences
+    double place[MAX_POINTS];  // of the points, in [-2, 2]
+    Numbers point[MAX_POINTS]; // Newton's coefficients: divided differences
     int points;
 } Block;
 
@@ -107,7 +107,7 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     const double last = apart(start, other);
     const double before = apart(other, warmed_up(block, k, most - 2));
     const double close =
-        allowed(block) / fc_most(block->of->options->stiffness_at_end, fc_scene_stiffness(scene, 0.0));
+        allowed(block) / fc_max(block->of->options->stiffness_at_end, fc_scene_stiffness(scene, 0.0));
     if (start.slips != block->start.slips || other.slips != start.slips ||
         !(last <= close && last * last <= close * (before - last))) {
         return false;
@@ -156,13 +156,13 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene end = scene_at(block, block->of->count - 1.0);
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
     const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
-    const double sigma = fc_most(block->of->options->stiffness_at_end, fc_most(at.sigma, at_end.sigma));
-    const double delta = fc_most(fc_size(block->start), fc_most(bound_of(&at), bound_of(&at_end)));
+    const double sigma = fc_max(block->of->options->stiffness_at_end, fc_max(at.sigma, at_end.sigma));
+    const double delta = fc_max(fc_size(block->start), fc_max(bound_of(&at), bound_of(&at_end)));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->of->scene->friction->sigma_1;
     // Errors of the deflection add up until they have relaxed.
     const double lives =
-        fc_least(block->of->count, 1.0 / fc_most(typical->map.relaxation, 1.0 / block->of->count));
+        fc_min(block->of->count, 1.0 / fc_max(typical->map.relaxation, 1.0 / block->of->count));
     const FcMap of_map = {
         .relaxation = sigma * delta * lives,
         .offset = sigma * lives,
@@ -182,7 +182,7 @@ static Numbers weights(const Block* block, const Numbers* typical) {
 // The angles of the points, over pi / 16: Chebyshev's, in an order that halves the angles between them. Of
 // those in between, one at the end of the block comes first, since errors are largest there, and then one
 // inside, where a kink would be.
-static const int ANGLE[MOST_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
+static const int ANGLE[MAX_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
 
 // The place of period k in the block, in [-2, 2]: a length that keeps products of distances near 1.
 static double place_in(const Block* block, double k) { return 4.0 * k / (block->of->count - 1.0) - 2.0; }
@@ -199,7 +199,7 @@ static double largest_error(int count, const Numbers* weight, const double* erro
         if (isnan(seen)) {
             return HUGE_VAL;
         }
-        largest = fc_most(largest, seen);
+        largest = fc_max(largest, seen);
     }
     return largest;
 }
@@ -230,7 +230,7 @@ static double less_foretold(const Block* block, double k, Numbers* map) {
 // none, or if a period has no map.
 static bool interpolate(Block* block) {
     const double may = allowed(block);
-    const double most = fc_least(MOST_POINTS, floor(MOST_PART * block->of->count));
+    const double most = fc_min(MAX_POINTS, floor(MAX_PART * block->of->count));
     double before_last = HUGE_VAL;
     for (block->points = 0; block->points < most;) {
         const int j = block->points;
@@ -250,7 +250,7 @@ static bool interpolate(Block* block) {
         }
         block->points++;
         // The errors of a kink fall slowly, and one may be small by chance.
-        const double most_before = block->of->warm_up > 0 ? 1.0 : MOST_BEFORE;
+        const double most_before = block->of->warm_up > 0 ? 1.0 : MAX_BEFORE;
         if (j >= FEWEST_POINTS && last <= may && before_last <= most_before * may) {
             return true;
         }
@@ -260,7 +260,7 @@ static bool interpolate(Block* block) {
 }
 
 static double periods_of_part(const Block* block) {
-    return fc_most(1.0, floor(block->of->count / MOST_PARTS));
+    return fc_max(1.0, floor(block->of->count / MAX_PARTS));
 }
 
 // The time between a and b at which the push turns. If d does not vibrate, that is nearly the reversal of V.
@@ -278,7 +278,7 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
 // an ElasticPlastic bristle: below 0 it slips along both.
 static double distance_less_way(const Block* block, double k) {
     const FcScene scene =
-        scene_at(block, fc_least(k, block->of->count - 2.0)); // up to two periods are looked at
+        scene_at(block, fc_min(k, block->of->count - 2.0)); // up to two periods are looked at
     const int side = block->of->side;
     FcPlane plane;
     fc_plane_make(&plane, &scene);
@@ -339,7 +339,7 @@ typedef struct {
     FcVector middle;              // m, of the swing, from the deflection at a period's start
     double swing;                 // m, about the middle
     FcVector V, rate;             // m/s and m/s a period, without the vibration
-    double D[2 * MOST_PARTS + 2]; // m, the least bound of the periods at the ends of parts
+    double D[2 * MAX_PARTS + 2]; // m, the least bound of the periods at the ends of parts
 } Rooms;
 
 static Rooms rooms_of(const Block* block) {
@@ -358,7 +358,7 @@ static Rooms rooms_of(const Block* block) {
         rooms.swing = swing;
     }
     for (int i = 0; i * rooms.stride < block->of->count + rooms.stride; i++) {
-        const FcScene scene = scene_at(block, fc_least(i * rooms.stride, block->of->count - 1.0));
+        const FcScene scene = scene_at(block, fc_min(i * rooms.stride, block->of->count - 1.0));
         FcPlane plane;
         fc_plane_make(&plane, &scene);
         rooms.D[i] = fc_scene_smallest_saturation(&plane.of_static_limit, block->period);
@@ -368,7 +368,7 @@ static Rooms rooms_of(const Block* block) {
 
 static double room_at(const Block* block, const Rooms* rooms, double k, FcBristle start) {
     const int i = (int)(k / rooms->stride);
-    const double length = fc_least(rooms->stride, block->of->count - 1.0 - i * rooms->stride);
+    const double length = fc_min(rooms->stride, block->of->count - 1.0 - i * rooms->stride);
     const double part = length > 0.0 ? (k - i * rooms->stride) / length : 0.0;
     const double D = rooms->D[i] + part * (rooms->D[i + 1] - rooms->D[i]);
     const double V = hypot(rooms->V.x + k * rooms->rate.x, rooms->V.y + k * rooms->rate.y) +
@@ -411,7 +411,7 @@ static FcBristle stuck_at(const Stuck* of, double t) {
 
 // The distance [m] to the bound, at the part `phase` of period k, or at the next end of the block.
 static double room_of_stuck(const Stuck* of, double k, double phase) {
-    const double t = fc_least(fc_most(0.0, k + phase), of->block->of->count) * of->block->period;
+    const double t = fc_min(fc_max(0.0, k + phase), of->block->of->count) * of->block->period;
     *of->block->evaluations += 1.0;
     return fc_bound(&of->plane, 0, t).D - fc_size(stuck_at(of, t));
 }
@@ -423,13 +423,13 @@ static double least_room(const Stuck* of, double k) {
     for (int i = 0; i < PHASES; i++) {
         const double room = room_of_stuck(of, k, (double)i / PHASES);
         at = room < least ? i : at;
-        least = fc_least(least, room);
+        least = fc_min(least, room);
     }
     const double before = room_of_stuck(of, k, (at - 1.0) / PHASES);
     const double after = room_of_stuck(of, k, (at + 1.0) / PHASES);
     const double bend = before - 2.0 * least + after;
     const double vertex = bend > 0.0 ? at + 0.5 * (before - after) / bend : at;
-    return fc_least(least, room_of_stuck(of, k, vertex / PHASES));
+    return fc_min(least, room_of_stuck(of, k, vertex / PHASES));
 }
 
 // Whether a bristle that sticks in the block would meet its bound in it: it is followed through the tightest period and
@@ -443,17 +443,17 @@ static bool meets_while_stuck(const Block* block, const Place* without_room, int
     for (int i = 0; i < places; i++) {
         const double room = least_room(&of, without_room[i].k);
         part = room < least ? without_room[i].k : part;
-        least = fc_least(least, room);
+        least = fc_min(least, room);
     }
     const double stride = periods_of_part(block);
     double tightest = part;
-    for (double k = fc_most(0.0, part - stride); k < fc_least(part + stride + 1.0, block->of->count);
+    for (double k = fc_max(0.0, part - stride); k < fc_min(part + stride + 1.0, block->of->count);
          k += 1.0) {
         const double room = least_room(&of, k);
         tightest = room < least ? k : tightest;
-        least = fc_least(least, room);
+        least = fc_min(least, room);
     }
-    for (double k = fc_most(0.0, tightest - 1.0); k < fc_least(tightest + 2.0, block->of->count); k += 1.0) {
+    for (double k = fc_max(0.0, tightest - 1.0); k < fc_min(tightest + 2.0, block->of->count); k += 1.0) {
         const Place place = {k, 0.0, stuck_at(&of, k * block->period)};
         if (meets(block, &place)) {
             return true;
@@ -489,7 +489,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     FcStepResult result = *total;
     const bool is_watched = of->side == 0 && of->warm_up == 0 && of->is_bounded;
     const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = of->count};
-    Place without_room[2 * MOST_PARTS + 1]; // the period with the least room of each part
+    Place without_room[2 * MAX_PARTS + 1]; // the period with the least room of each part
     int places = 0;
     Place least = {.room = HUGE_VAL};
     for (double k = 0.0; k < of->count; k += 1.0) {

@@ -58,16 +58,16 @@ static void start_control(FcCrossing* crossing, double scale) {
 // The least progress over the part, in u. Derived: more than 12 events within it are rounding.
 static const double PROGRESS = 0x1p-40;
 
-// Panels in a row that do not get on, at an event that rounding hides. After twice FC_MOST_TRIES of them the march passes
+// Panels in a row that do not get on, at an event that rounding hides. After twice FC_MAX_REJECTIONS of them the march passes
 // over 2^-50 of the part, and then over twice as much each time. Over more than 2^-20 it gives up, and the step is refused.
 static void pass_over_rounding(FcCrossing* crossing, double before, int stalled) {
-    const int doublings = stalled - 2 * FC_MOST_TRIES;
+    const int doublings = stalled - 2 * FC_MAX_REJECTIONS;
     if (doublings > 30) {
         crossing->along.offset = NAN;
         return;
     }
-    crossing->at.u = fc_least(crossing->end,
-                              fc_most(crossing->at.u, before + ldexp(0x1p-50, doublings) *
+    crossing->at.u = fc_min(crossing->end,
+                              fc_max(crossing->at.u, before + ldexp(0x1p-50, doublings) *
                                                                    (fabs(before) + crossing->end - before)));
     crossing->at.t = fc_part_time(&crossing->part, crossing->at.u);
 }
@@ -75,7 +75,7 @@ static void pass_over_rounding(FcCrossing* crossing, double before, int stalled)
 static void cross_part(FcCrossing* crossing, int number) {
     fc_begin_part(crossing, number);
     int stalled = 0;
-    while (crossing->evaluations <= FC_MOST_EVALUATIONS && !isnan(crossing->along.offset)) {
+    while (crossing->evaluations <= FC_MAX_EVALUATIONS && !isnan(crossing->along.offset)) {
         fc_choose_variable(crossing);
         if (fc_part_is_crossed(crossing)) {
             break;
@@ -89,8 +89,8 @@ static void cross_part(FcCrossing* crossing, int number) {
             }
         }
         stalled = crossing->at.u - before > PROGRESS * crossing->whole ? 0 : stalled + 1;
-        crossing->is_stalled = stalled > FC_MOST_TRIES;
-        if (stalled > 2 * FC_MOST_TRIES) {
+        crossing->is_stalled = stalled > FC_MAX_REJECTIONS;
+        if (stalled > 2 * FC_MAX_REJECTIONS) {
             pass_over_rounding(crossing, before, stalled);
         }
     }
@@ -275,7 +275,7 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
         choose_rigid(&crossing);
         crossing.from.for_any = true;
         crossing.is_bounded = false;
-        crossing.scale = fc_most(start, crossing.first.limit / crossing.first.sigma);
+        crossing.scale = fc_max(start, crossing.first.limit / crossing.first.sigma);
         start_control(&crossing, crossing.scale);
         cross(&crossing);
         *evaluations = crossing.evaluations;

@@ -24,7 +24,7 @@ static inline double series_cos_less_1(double x) {
 
 // The largest number of halvings of an argument for the series. Each doubling back loses a digit of two; beyond,
 // the library takes over.
-enum { MOST_HALVINGS = 5 };
+enum { MAX_HALVINGS = 5 };
 typedef struct {
     int count;
     double factor; // 2^-count
@@ -32,14 +32,14 @@ typedef struct {
 
 static inline Halvings halvings(double size) {
     Halvings halved = {0, 1.0};
-    while (size * halved.factor > FC_SERIES_RANGE && halved.count <= MOST_HALVINGS) {
+    while (size * halved.factor > FC_SERIES_RANGE && halved.count <= MAX_HALVINGS) {
         halved.factor *= 0.5;
         halved.count++;
     }
     return halved;
 }
 
-static inline bool fits(Halvings halved) { return halved.count <= MOST_HALVINGS; }
+static inline bool fits(Halvings halved) { return halved.count <= MAX_HALVINGS; }
 
 // x -> e^x - 1.
 FC_INLINE void exp_less_1(double* x, Halvings halved) {
@@ -146,11 +146,11 @@ FC_INLINE bool with_series(const FcPlane* plane, const FcPart* part, double u, d
         return false;
     }
     // The vibration's angle, from that of the middle.
-    const double farthest = fc_most(fabs(x[START]), fabs(x[LAST]));
+    const double farthest = fc_max(fabs(x[START]), fabs(x[LAST]));
     const Halvings angle = halvings(farthest * drive->omega);
     const bool moves = fc_scene_depends_on_d(scene);
     const double motion =
-        farthest * fabs(drive->d.rate) + drive->vibration.a_d * fc_least(farthest * drive->omega, 2.0);
+        farthest * fabs(drive->d.rate) + drive->vibration.a_d * fc_min(farthest * drive->omega, 2.0);
     const Halvings exponent = halvings(moves ? scene->at_E.decay * motion : 0.0);
     if (!fits(angle) || !fits(exponent)) {
         return false;
@@ -172,7 +172,7 @@ FC_INLINE bool with_series(const FcPlane* plane, const FcPart* part, double u, d
         }
     }
     for (int i = 0; i < POINTS; i++) {
-        nodes->t[i] = fc_least(fc_most(middle + x[i], part->start), part->end);
+        nodes->t[i] = fc_min(fc_max(middle + x[i], part->start), part->end);
         nodes->phase[i] = (FcPhase){s + (s * cosine[i] + c * sine[i]), c + (c * cosine[i] - s * sine[i])};
         nodes->sigma[i] = scene->at_E.stiffness_0;
         nodes->static_limit[i] = scene->F_C;

@@ -25,7 +25,7 @@ FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double he
     const double over_speed = 1.0 / speed;
     for (int i = 0; i < FC_POINTS; i++) {
         const double v = V[i] * over_speed;
-        const double over_limit = 1.0 / fc_most(nodes->limit[i], 1e-300);
+        const double over_limit = 1.0 / fc_max(nodes->limit[i], 1e-300);
         const double heat = heats ? (F[i] + held) * over_limit * fabs(v) : 0.0;
         f[i] = (F[i] - held) * (1.0 + v + heat) * (nodes->tau[i] * over_duration);
     }
@@ -37,13 +37,13 @@ FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double he
 // end by the rate there, inside by the least rate of the panel.
 FC_INLINE void fc_set_errors(FcPanel* panel, double z_first, double z_last, double force, double unresolved,
                              double quadrature) {
-    const double whole = fc_most(0.0, panel->z);
-    const double z_end = fc_most(0.0, fc_least(z_last, whole));
-    const double z_least = fc_most(fc_least(z_end, z_first), fc_least(whole, sqrt(whole)));
+    const double whole = fc_max(0.0, panel->z);
+    const double z_end = fc_max(0.0, fc_min(z_last, whole));
+    const double z_least = fc_max(fc_min(z_end, z_first), fc_min(whole, sqrt(whole)));
     const double weight = FC_RADAU.weight[FC_STAGES - 1];
     panel->end_error = force * unresolved / (1.0 + z_end);
     panel->mean_error = quadrature + FC_MEAN_OF_DEFECT * force * unresolved *
-                                         fc_most(1.0 / (1.0 + z_least), weight / (1.0 + z_end));
+                                         fc_max(1.0 / (1.0 + z_least), weight / (1.0 + z_end));
 }
 
 #endif

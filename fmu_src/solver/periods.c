@@ -13,14 +13,14 @@
 
 // The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
 // minutes.
-static const double MOST_CHANGING_PERIODS = 1e6;
+static const double MAX_CHANGING_PERIODS = 1e6;
 
 // The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
 // costs a part of a period; twice of it accepts ends that still change by twice as much. If a bristle relaxes
-// by a small part in each period, the remaining distance is many times the change over a period. LEAST_PART
+// by a small part in each period, the remaining distance is many times the change over a period. MIN_PART
 // is a change by rounding, and all that counts in ElasticPlastic.
 static const double SAME_END = 1e-10;
-static const double LEAST_PART = 1e-4;
+static const double MIN_PART = 1e-4;
 
 // The largest distance from the edge of the free starts that counts as 0, over the edge. Rounding: 450 eps.
 // Twice of it moves the edge by as much.
@@ -28,13 +28,13 @@ static const double ROUNDING_OF_EDGE = 1e-13;
 
 // The largest part of a start that a period may forget if its end determines its start: at one half the start
 // has twice the error of the end. More would multiply the error further.
-static const double MOST_FORGOTTEN = 0.5;
+static const double MAX_FORGOTTEN = 0.5;
 
 // The largest number of periods that meet the bound before a repetition is given up. With static friction the
 // place of sticking may depend on the place of break-away. Then periods need not repeat, and the mean over
 // the last third of the meetings counts. Half as many would give a mean over fewer periods; twice as many
 // would cost twice the time.
-enum { MOST_MEETINGS = 1000 };
+enum { MAX_MEETINGS = 1000 };
 // The same in the plane, over that, while the mean still drifts by more than the tolerance: a bristle that slips
 // little in each period turns slowly. Chosen empirically: half of it left a found scene 3e-5 of the force away,
 // twice of it costs twice the time of a chaotic motion.
@@ -93,7 +93,7 @@ static double edge_of(Walk* walk, int side) {
     walk->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
     const double room = side * (end.delta - map->offset);
-    *edge = side * fc_least(side * farthest, room / kept);
+    *edge = side * fc_min(side * farthest, room / kept);
     return *edge;
 }
 
@@ -111,7 +111,7 @@ static void take_free(const Walk* walk, double n, FcStepResult* total) {
 static void settle(const Walk* walk, FcStepResult* total) {
     const FcMap* map = &walk->free_map;
     const FcMap* across = &walk->free_map_across;
-    const double least = 1e-300 * fc_most(1.0, fc_most(fabs(map->offset), fabs(across->offset)));
+    const double least = 1e-300 * fc_max(1.0, fc_max(fabs(map->offset), fabs(across->offset)));
     if (!(map->relaxation > least)) {
         return; // nothing relaxes
     }
@@ -162,11 +162,11 @@ static double free_periods_by_steps(Walk* walk, double left) {
     }
     double free = 0.0; // periods that are free
     double more = 1.0; // periods that are not all free, once they are found
-    while (free < left && walk->total.evaluations <= FC_MOST_EVALUATIONS && !meets_after(walk, more - 1.0)) {
+    while (free < left && walk->total.evaluations <= FC_MAX_EVALUATIONS && !meets_after(walk, more - 1.0)) {
         free = more;
         more *= 2.0;
     }
-    while (free < left && more - free > 1.0 && walk->total.evaluations <= FC_MOST_EVALUATIONS) {
+    while (free < left && more - free > 1.0 && walk->total.evaluations <= FC_MAX_EVALUATIONS) {
         const double middle = floor(0.5 * (free + more));
         if (middle == free || middle == more) { // beyond 2^53
             break;
@@ -177,14 +177,14 @@ static double free_periods_by_steps(Walk* walk, double left) {
             free = middle;
         }
     }
-    return free * moved <= rounding ? 0.0 : fc_least(free, left); // it is at the edge
+    return free * moved <= rounding ? 0.0 : fc_min(free, left); // it is at the edge
 }
 
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
 // (1 - P) in n of them, with the first shift s.
 static double free_periods(Walk* walk, double left) {
     const FcMap map = free_map_of(walk);
-    if (walk->is_planar || map.relaxation > MOST_FORGOTTEN) {
+    if (walk->is_planar || map.relaxation > MAX_FORGOTTEN) {
         return free_periods_by_steps(walk, left);
     }
     const double delta = walk->total.delta;
@@ -203,7 +203,7 @@ static double free_periods(Walk* walk, double left) {
     }
     const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * room) / log1p(-map.relaxation) : room;
     assert(!(n < 0.0));
-    return fc_least(left, floor(n) + 1.0);
+    return fc_min(left, floor(n) + 1.0);
 }
 
 static void take_cycles(Walk* walk, double times) {
@@ -223,17 +223,17 @@ static bool repeats(Walk* walk) {
     const FcStepResult* total = &walk->total;
     const double size = size_of(total);
     const double changed =
-        fc_most(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
+        fc_max(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
     if (walk->met_at < 0.0 || total->slips != walk->met.slips || !(changed <= SAME_END * size)) {
         return false;
     }
-    return changed <= SAME_END * LEAST_PART * size ||
-           changed <= SAME_END * fc_least(1.0, free_map_of(walk).relaxation) * size;
+    return changed <= SAME_END * MIN_PART * size ||
+           changed <= SAME_END * fc_min(1.0, free_map_of(walk).relaxation) * size;
 }
 
 // The farthest that a step of Newton moves the deflection, over it. Chosen empirically: without a limit one of
 // 143 drawn scenes settles elsewhere, at half of it errors grow.
-static const double MOST_OF_NEWTON = 1.0;
+static const double MAX_OF_NEWTON = 1.0;
 
 // In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that of a
 // period that repeats, by a step of Newton; the last period began at `from` [m].
@@ -251,7 +251,7 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
     if (!isfinite(length)) {
         return false;
     }
-    const double most = MOST_OF_NEWTON * size_of(total);
+    const double most = MAX_OF_NEWTON * size_of(total);
     const double part = length > most ? most / length : 1.0;
     const FcBristle reached = fc_reach(scene, (FcBristle){.delta = from.x + part * start.x,
                                                           .delta_y = from.y + part * start.y,
@@ -279,8 +279,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
     const bool may_step = walk->is_planar && isinf(periods) && !fc_has_static_friction(walk->scene->friction);
     double keep = 1.0;                    // the number of the next meeting that is kept
     FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
-    const int most = (walk->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
-    while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < most) {
+    const int most = (walk->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MAX_MEETINGS;
+    while (walk->done < periods && total->evaluations <= FC_MAX_EVALUATIONS && meetings < most) {
         total->evaluations += OF_A_PERIOD;
         const FcStepResult before = *total;
         total->meetings = 0;
@@ -303,7 +303,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
             // Each is kept half as long again as the last, so that a cycle of any length returns to it.
             if (meetings >= keep) {
                 keep = ceil(1.5 * meetings);
-                if (!still_drifts(walk, &mean) && meetings > MOST_MEETINGS) {
+                if (!still_drifts(walk, &mean) && meetings > MAX_MEETINGS) {
                     return;
                 }
                 if (isinf(periods)) { // sums and number of free periods would take digits from the cycle's
@@ -314,7 +314,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
             } else if (may_step && !was_free &&
-                       meetings < MOST_MEETINGS / 2 && // the mean over the last third must be one
+                       meetings < MAX_MEETINGS / 2 && // the mean over the last third must be one
                        take_newton_step(walk->scene, (FcVector){before.delta, before.delta_y}, total)) {
                 walk->met_at = -1.0; // periods repeat only if no step lies between them
             }
@@ -348,7 +348,7 @@ static double step_over_equal_periods(const FcScene* scene, const FcSolverOption
         *total = walk.total;
         return walk.done;
     }
-    while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
+    while (walk.done < periods && walk.total.evaluations <= FC_MAX_EVALUATIONS) {
         walk_to_repetition(&walk, periods);
         const double cycle = walk.done - walk.met_at;
         if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
@@ -376,7 +376,7 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
     const double f = scene->drive.vibration.f;
     const bool is_linear = fc_drive_is_linear(&scene->drive);
     const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
-    const double rest = periods > 0.0 ? fc_most(0.0, fma(h, f, -periods) / f) : h;
+    const double rest = periods > 0.0 ? fc_max(0.0, fma(h, f, -periods) / f) : h;
     // A rest of no more than the rounding of h could take a slip off its bound.
     const bool has_rest = rest > 4.0 * DBL_EPSILON * h;
     assert(h >= 0.0 && rest <= h);
@@ -385,12 +385,12 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
         until_end = options_until_end(options, scene, h);
         options = &until_end;
     }
-    if (periods > MOST_CHANGING_PERIODS && is_linear) {
+    if (periods > MAX_CHANGING_PERIODS && is_linear) {
         return fc_message_set(
             message,
             "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
             "at most %.9g of them are computed: the largest step is %.9g s",
-            h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
+            h, periods, MAX_CHANGING_PERIODS, MAX_CHANGING_PERIODS / f);
     }
     double done = periods;
     if (periods < 2.0) {
@@ -409,12 +409,12 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
             fc_take_pieces(scene, options, rest, result);
         }
     }
-    if (result->evaluations > FC_MOST_EVALUATIONS) {
+    if (result->evaluations > FC_MAX_EVALUATIONS) {
         return fc_message_set(
             message,
             "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves over "
             "too many orders of magnitude in it, or no period is like another; use steps of at most %.1g s",
-            h, FC_MOST_EVALUATIONS, done < periods && done >= 1.0 ? 0.5 * done / f : 0.01 * h);
+            h, FC_MAX_EVALUATIONS, done < periods && done >= 1.0 ? 0.5 * done / f : 0.01 * h);
     }
     return true;
 }

@@ -70,7 +70,7 @@ static FcSolverOptions options_of_piece(const FcSolverOptions* options, const Fc
                              ? fc_scene_smallest_limit(pieces->scene, pieces->h)
                              : 0.0;
     if (limit > 0.0) {
-        own.force = fc_least(own.force, fc_force_beside_damping(options->largest, options->damping, limit));
+        own.force = fc_min(own.force, fc_force_beside_damping(options->largest, options->damping, limit));
     }
     return own;
 }
@@ -79,7 +79,7 @@ void fc_take_pieces(const FcScene* scene, const FcSolverOptions* options, double
                     FcStepResult* total) {
     FcPieces pieces;
     fc_pieces_start(&pieces, scene, duration);
-    while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
+    while (total->evaluations <= FC_MAX_EVALUATIONS && fc_next_piece(&pieces)) {
         if (fc_scene_is_loose(pieces.scene)) {
             fc_loose_step(total);
         } else {

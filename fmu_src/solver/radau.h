@@ -16,12 +16,12 @@ typedef struct {
     double fall;
 } FcTail;
 
-FC_INLINE double fc_larger(FcPair pair) { return fc_most(fabs(pair[0]), fabs(pair[1])); }
+FC_INLINE double fc_larger(FcPair pair) { return fc_max(fabs(pair[0]), fabs(pair[1])); }
 
 // a / b, at the most 1. No quotient overflows.
 FC_INLINE double fc_fall(double a, double b) {
     const double over = b + 1e-300;
-    return fc_least(a, over) / over;
+    return fc_min(a, over) / over;
 }
 
 FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
@@ -35,7 +35,7 @@ FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
     }
     const double top = fc_larger(high);
     const double before = fc_larger(middle);
-    const double square = fc_most(fc_most(fc_fall(0.5 * fabs(at_start), top), fc_fall(top, before)),
+    const double square = fc_max(fc_max(fc_fall(0.5 * fabs(at_start), top), fc_fall(top, before)),
                                   sqrt(fc_fall(before, fc_larger(low))));
     return (FcTail){top, sqrt(square)};
 }
@@ -53,18 +53,18 @@ FC_INLINE double fc_acting_part(double x) {
 FC_INLINE double fc_radau_unresolved(const double* slope, double z) {
     const double at_start = fc_dot(FC_POINTS, FC_RADAU.start, slope);
     const FcTail tail = fc_tail_of(slope, 0.0); // at_start counts itself, and may be rounding
-    const double acts = fc_least(1.0, z / (z + 2.0 * FC_STAGES) + tail.fall);
-    return fc_most(fabs(at_start), tail.top * tail.fall) * fc_acting_part(acts);
+    const double acts = fc_min(1.0, z / (z + 2.0 * FC_STAGES) + tail.fall);
+    return fc_max(fabs(at_start), tail.top * tail.fall) * fc_acting_part(acts);
 }
 
 // The error of the integral of f over the panel, which is 1 long. A tail within the rounding of f counts as none.
 FC_INLINE double fc_radau_quadrature_error(const double* f) {
     double largest = 0.0;
     for (int i = 0; i < FC_STAGES; i++) {
-        largest = fc_most(largest, fabs(f[i]));
+        largest = fc_max(largest, fabs(f[i]));
     }
     const FcTail tail = fc_tail_of(f, fc_dot(FC_POINTS, FC_RADAU.start, f));
-    return fc_most(0.0, tail.top - 3e-14 * largest) * tail.fall * fc_acting_part(tail.fall);
+    return fc_max(0.0, tail.top - 3e-14 * largest) * tail.fall * fc_acting_part(tail.fall);
 }
 
 #endif

@@ -51,8 +51,8 @@ double fc_first_rise(const double at_points[FC_POINTS], double over) {
     double smallest = at_points[0];
     for (int i = 0; i < POINTS; i++) {
         f[i] = at_points[i];
-        largest = fc_most(largest, f[i]);
-        smallest = fc_least(smallest, f[i]);
+        largest = fc_max(largest, f[i]);
+        smallest = fc_min(smallest, f[i]);
     }
     if (largest + 0.25 * (largest - smallest) < 0.0) { // nor between the points
         return 2.0;

@@ -11,7 +11,7 @@ enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAG
 
 // The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
 // long. Half of it refuses good panels, twice of it costs time.
-enum { MOST_ITERATIONS = 12 };
+enum { MAX_ITERATIONS = 12 };
 // The step of the angle [rad] below which Newton's method ends. Derived: its square is rounding, and so is, to the
 // finest tolerance, its multiple if a diagonal is cut and the method is of first order.
 static const double LAST_STEP = 1e-10;
@@ -32,7 +32,7 @@ static void guess_angles(const FcNodes* nodes, const FcPlaneBound* bound, double
 // The angles a at the stages, beginning at a_0, with the slope tau / D (V_y cos a - V sin a).
 static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double a_0, double* a) {
     guess_angles(nodes, bound, a_0, a);
-    for (int tries = 0; tries < MOST_ITERATIONS; tries++) {
+    for (int tries = 0; tries < MAX_ITERATIONS; tries++) {
         double diagonal[STAGES];
         double left[STAGES];
         for (int i = 0; i < STAGES; i++) {
@@ -44,7 +44,7 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
             for (int j = 0; j < STAGES; j++) {
                 left[i] -= FC_RADAU.inverse[i][j] * (a[j] - a_0);
             }
-            diagonal[i] = fc_most(0.0, pace * (V.x * c + V.y * s));
+            diagonal[i] = fc_max(0.0, pace * (V.x * c + V.y * s));
         }
         FcSystem row;
         fc_collocation_begin(row, diagonal);
@@ -55,7 +55,7 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
         double largest = 0.0;
         for (int i = 0; i < STAGES; i++) {
             a[i] += row[i][FC_FIRST];
-            largest = fc_most(largest, fabs(row[i][FC_FIRST]));
+            largest = fc_max(largest, fabs(row[i][FC_FIRST]));
         }
         if (!(largest < 2.0)) { // also of no number
             return false;
@@ -137,7 +137,7 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
     double unresolved = 0.0;
     if (!plane->on_line) {
         quadrature += fc_error_of_force(nodes, from->speed, 0.0, true, F_y, nodes->V_y);
-        unresolved = fc_radau_unresolved(slope, fc_most(0.0, panel->z));
+        unresolved = fc_radau_unresolved(slope, fc_max(0.0, panel->z));
     }
     fc_set_errors(panel, 0.0, panel->rate * nodes->tau[LAST], panel->sigma * D_end, unresolved, quadrature);
     return true;

@@ -68,7 +68,7 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
     const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
     const double D = at.static_limit / at.sigma;
     const double moves = side * fc_drive_displacement(drive, t, *end);
-    *way = fc_most(0.0, D - side * crossing->along.offset);
+    *way = fc_max(0.0, D - side * crossing->along.offset);
     if (!(crossing->is_bounded && moves > *way)) {
         return false;
     }

@@ -37,14 +37,14 @@ static const double FC_PART_OF_STRIP = 0.4;
 static const double FC_RELAXATION = 60.0;
 
 // The longest panel in the variable u: 1.00, 1.00.
-static const double FC_LONGEST = 6.0;
+static const double FC_MAX_LENGTH_U = 6.0;
 
 // The longest panel in time, over that in which the contact moves by 1, for a tolerance of 1. 1.07 at half of it; 1.5 times
 // of it costs nothing.
-static const double FC_SMOOTH = 12.0;
+static const double FC_MAX_PHASE = 12.0;
 
 // The farthest way of a stuck bristle in a panel, in radii of its bound: so far the points show a meeting. 1.01, 1.00.
-static const double FC_MOST_OF_BOUND = 4.0;
+static const double FC_MAX_RADII = 4.0;
 
 // The velocity over V_S beyond which a part of the interval has the variable of the layer, not of the curve:
 // e^-36 of the curve is left. Two thirds of it cost 1.005, 1.5 times of it 1.001.

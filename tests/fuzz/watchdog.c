@@ -6,8 +6,8 @@
 //
 // A scene is drawn from its number: start values, and calls of co-simulation or model exchange, along a line or in the
 // plane. Its numbers are usual ones or lie between 1e-300 and 1e300; some inputs are 0, as of importers that do not connect
-// them. A worker makes the calls. A fault is a step that takes more than FC_MOST_EVALUATIONS and succeeds, a call that takes
-// more than ten times the second of the processor's time that FC_MOST_EVALUATIONS promise, that ends the worker, that breaks a
+// them. A worker makes the calls. A fault is a step that takes more than FC_MAX_EVALUATIONS and succeeds, a call that takes
+// more than ten times the second of the processor's time that FC_MAX_EVALUATIONS promise, that ends the worker, that breaks a
 // rule of host.h, or, with --ordinary, that divides by zero, overflows or has an invalid result.
 #include <fenv.h>
 #include <float.h>
@@ -33,10 +33,10 @@ static void demand(bool holds, const char* rule);
 #include "host.h"
 
 static const double LONGEST = 10.0; // s, of a call: no machine is so busy that a shorter one takes as long
-// Of FC_MOST_EVALUATIONS: what a period may add to the last one that they allow.
-static const double MOST_WORK = 1.1;
+// Of FC_MAX_EVALUATIONS: what a period may add to the last one that they allow.
+static const double MAX_WORK = 1.1;
 
-enum { MOST_ACTIONS = 90, TEXT = 200, MOST_SHOWN = 40 };
+enum { MAX_ACTIONS = 90, TEXT = 200, MAX_SHOWN = 40 };
 
 // What a host does, with a variable and a number. The first actions of a scene are its start values.
 typedef enum { START, STEP, SET, RATE, OUTPUTS, STATES_RATES, OUTPUT_RATES, DIRECTIONAL, COPY, KINDS } Kind;
@@ -52,7 +52,7 @@ typedef struct {
 typedef struct {
     bool exchange;
     int actions;
-    Action action[MOST_ACTIONS];
+    Action action[MAX_ACTIONS];
 } Scene;
 
 typedef enum { SOUND, TOO_LONG, TOO_MUCH, ENDED, BROKEN, EXCEPTION } Fault;
@@ -200,7 +200,7 @@ static double evaluations_of(fmi2Component c) {
 static void judge_work(fmi2Component c, double before) {
     const double work = evaluations_of(c) - before;
     board->most = fmax(board->most, work);
-    if (work > MOST_WORK * FC_MOST_EVALUATIONS) {
+    if (work > MAX_WORK * FC_MAX_EVALUATIONS) {
         tell(TOO_MUCH, "");
     }
 }
@@ -380,7 +380,7 @@ static int run_many(long calls, long first) {
     long faults = 0;
     board->scene = first;
     while (board->calls < calls) {
-        if (run_from(calls) != SOUND && faults++ < MOST_SHOWN) {
+        if (run_from(calls) != SOUND && faults++ < MAX_SHOWN) {
             printf("scene %ld %s: %s\n", board->scene, FAULT[board->fault], board->what);
         }
         board->scene++;

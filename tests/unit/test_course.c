@@ -16,7 +16,7 @@ typedef struct {
     FcFriction friction;
     FcScene scene;
     FcPlane plane;
-    FcPart parts[FC_MOST_PARTS];
+    FcPart parts[FC_MAX_PARTS];
     double h;
     int count;
 } Course;
@@ -41,7 +41,7 @@ static void make(Course* course, FcLinearInput V, FcLinearInput V_y, FcVibration
 }
 
 static void check_cover(const Course* course) {
-    CHECK(course->count >= 1 && course->count <= FC_MOST_PARTS);
+    CHECK(course->count >= 1 && course->count <= FC_MAX_PARTS);
     CHECK(course->parts[0].start == 0.0 && course->parts[course->count - 1].end == course->h);
     for (int i = 0; i < course->count; i++) {
         const FcPart* part = &course->parts[i];

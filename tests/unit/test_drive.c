@@ -48,15 +48,15 @@ static void rest_of_the_time_counts(void) {
     CHECK_WITHIN(with.theta_0 - without.theta_0, TWO_PI * F * rest, 2e-15);
 }
 
-enum { MOST_EVENTS = 64 };
+enum { MAX_EVENTS = 64 };
 typedef struct {
-    double reversal[MOST_EVENTS]; // s, their times
+    double reversal[MAX_EVENTS]; // s, their times
     int events, reversals;
 } Events;
 
 static Events events_until(const FcDrive* drive, double end) {
     Events all = {.events = 0};
-    for (double t = 0.0; t < end && all.events < MOST_EVENTS;) {
+    for (double t = 0.0; t < end && all.events < MAX_EVENTS;) {
         const FcDriveEvent next = fc_drive_next_event(drive, t, end);
         CHECK(next.time > t && next.time <= end && !(next.reversal && next.time == end));
         all.events += next.time < end;

@@ -50,13 +50,13 @@ static FcSavedState full_state(void) {
 
 typedef struct {
     size_t size;
-    char bytes[MOST_BYTES];
+    char bytes[MAX_BYTES];
 } Bytes;
 
 static Bytes bytes_of(fmi2Component c, FcSavedState* saved) {
     Bytes written = {0};
-    CHECK(fmi2SerializedFMUstateSize(c, saved, &written.size) == fmi2OK && written.size <= MOST_BYTES);
-    CHECK(fmi2SerializeFMUstate(c, saved, written.bytes, MOST_BYTES) == fmi2OK);
+    CHECK(fmi2SerializedFMUstateSize(c, saved, &written.size) == fmi2OK && written.size <= MAX_BYTES);
+    CHECK(fmi2SerializeFMUstate(c, saved, written.bytes, MAX_BYTES) == fmi2OK);
     return written;
 }
 
@@ -115,7 +115,7 @@ static void bytes_are_as_documented(fmi2Component c) {
     put_hash(&expected);
     CHECK(AT_VALUES + sizeof saved.friction + sizeof saved.experiment + 8 == written.size);
     CHECK(memcmp(expected.bytes, written.bytes, written.size) == 0);
-    char too_few[MOST_BYTES];
+    char too_few[MAX_BYTES];
     CHECK(fmi2SerializeFMUstate(c, &saved, too_few, written.size - 1) == fmi2Error);
 }
 
