@@ -64,7 +64,7 @@ static FcPlaneCoefficients coefficients(const March* march, FcPhase* phase) {
 }
 
 static void use_variable(March* march, double center, double length) {
-    march->part.in = (FcStraight){isfinite(length) ? center : 0.0, length};
+    march->part.in = (FcTimeMap){isfinite(length) ? center : 0.0, length};
 }
 
 // ---- events ----
@@ -285,11 +285,11 @@ static double planned(const March* march) {
 
 // Makes the next panel, as long as it is accurate; *h becomes its length in u. False if it cannot be solved.
 static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel) {
-    const FcStraight* in = &march->part.in;
-    *h = fc_straight_place(in, fc_min(march->part.end, march->t + planned(march))) - u;
+    const FcTimeMap* in = &march->part.in;
+    *h = fc_time_map_u(in, fc_min(march->part.end, march->t + planned(march))) - u;
     *h = *h > 0.0
              ? *h
-             : fc_straight_place(in, march->part.end) - u; // what is planned is less than t is rounded by
+             : fc_time_map_u(in, march->part.end) - u; // what is planned is less than t is rounded by
     if (isfinite(in->length)) {
         *h = fc_min(*h, MAX_U);
     }
@@ -516,8 +516,8 @@ static bool take_panel(March* march) {
     }
     FcNodes nodes;
     FcBodyPanel panel;
-    const double u = fc_straight_place(&march->part.in, march->t);
-    if (!(fc_straight_place(&march->part.in, march->part.end) > u)) { // the rest is less than u is rounded by
+    const double u = fc_time_map_u(&march->part.in, march->t);
+    if (!(fc_time_map_u(&march->part.in, march->part.end) > u)) { // the rest is less than u is rounded by
         reach(march, march->part.end, march->at.delta);
         return true;
     }
@@ -637,7 +637,7 @@ bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, do
                    .interval = &interval,
                    .body = body,
                    .speed = largest_speed(&interval, body),
-                   .part = {.in = {0.0, INFINITY}, .end = h, .narrow = 1.0},
+                   .part = {.in = {0.0, INFINITY}, .end = h, .strip_ratio = 1.0},
                    .is_bounded = fc_march_may_meet(scene)};
     begin(&march, fc_bristle_of(result));
     if (!march_periods(&march, h)) {

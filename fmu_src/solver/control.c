@@ -58,7 +58,7 @@ void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval
 }
 
 // The panel whose length in u, times dt/du where that is largest, is the time `span` [s].
-static double length_of_span(const FcStraight* in, double x, double span) {
+static double length_of_span(const FcTimeMap* in, double x, double span) {
     const double y = span / sqrt(in->length * in->length + x * x);
     if (x < 0.0 || y < 1e-3) {
         return y;
@@ -74,7 +74,7 @@ static bool is_relaxing(const FcControl* control, FcKind kind) {
 
 // The lag of the force behind sigma and g, over the force, if the bristle relaxes at that rate: their rate, times the time
 // of relaxation or of the layer.
-static double lag_for(const FcControl* control, const FcStraight* in, double rate) {
+static double lag_for(const FcControl* control, const FcTimeMap* in, double rate) {
     const double pace = control->interval->pace.log_sigma;
     const double relaxation = rate > 1.0 / DBL_MAX ? 1.0 / rate : INFINITY; // s
     return pace > 0.0 ? pace * fc_min(relaxation, in->length) : 0.0;
@@ -114,7 +114,7 @@ static double part_not_smooth(const FcControl* control, const FcReached* at, FcK
 static double graded_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
                             double behind, double span, double longest, double h) {
     const FcInterval* interval = control->interval;
-    const FcStraight* in = &part->in;
+    const FcTimeMap* in = &part->in;
     const double x = at->t - in->center;
     h = fc_min(h, length_of_span(in, x, span));
     h = fc_min(h, fc_min(FC_MAX_LENGTH_U, longest));
@@ -128,13 +128,13 @@ static double graded_length(const FcControl* control, const FcPart* part, const 
     const double lag = lag_for(control, in, fc_min(at->rate, rate_end));
     const double counts = FC_SAFETY * acts * part_not_smooth(control, at, kind, behind, lag, V_end) *
                           (x_end - x) / (interval->duration * interval->tolerance);
-    const double strip = part->narrow * FC_PART_OF_STRIP * FC_PI;
+    const double strip = part->strip_ratio * FC_PART_OF_STRIP * FC_PI;
     return counts > 0.0 ? fc_min(h, strip / sinh_of_small(rough_log(1.0 + counts) / ORDER)) : h;
 }
 
 double fc_control_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
                          double end, double proposed) {
-    const FcStraight* in = &part->in;
+    const FcTimeMap* in = &part->in;
     const double left = end - at->u;
     const double x = at->t - in->center;
     const bool relaxes = is_relaxing(control, kind);
@@ -144,7 +144,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     double span = control->span;
     double longest = control->longest;
     if (kind == FC_STICKS && at->per_path > 0.0) {
-        span = fc_min(span, fc_time_to_move(at->rate / at->per_path, part->most.of[1],
+        span = fc_min(span, fc_time_to_move(at->rate / at->per_path, part->speed_bound.of[1],
                                               FC_MAX_RADII / at->per_path));
     } else if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
         // A settled force is constant but for its lag, and the integrals of the constant are exact.

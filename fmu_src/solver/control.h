@@ -2,7 +2,7 @@
 #ifndef FC_SOLVER_CONTROL_H
 #define FC_SOLVER_CONTROL_H
 
-#include "solver/course.h"
+#include "solver/time_map.h"
 #include "solver/interval.h"
 #include "solver/panel.h"
 

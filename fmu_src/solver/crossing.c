@@ -73,7 +73,7 @@ void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane,
     }
     crossing->from = first_from(crossing);
     if (in_one_part) {
-        room->parts[0] = (FcPart){.end = interval->duration, .in = {0.0, INFINITY}, .narrow = 1.0};
+        room->parts[0] = (FcPart){.end = interval->duration, .in = {0.0, INFINITY}, .strip_ratio = 1.0};
     }
     crossing->count = in_one_part ? 1 : fc_parts(plane, interval->duration, interval->tolerance, room->parts);
     crossing->first = fc_coefficients_at(crossing, 0.0);
@@ -81,13 +81,13 @@ void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane,
 }
 
 // The present part in a variable.
-static void take_variable(FcCrossing* crossing, FcStraight in) {
+static void take_variable(FcCrossing* crossing, FcTimeMap in) {
     crossing->part.in = in;
-    crossing->at.u = fc_straight_place(&in, crossing->at.t);
-    crossing->end = fc_straight_place(&in, crossing->part.end);
+    crossing->at.u = fc_time_map_u(&in, crossing->at.t);
+    crossing->end = fc_time_map_u(&in, crossing->part.end);
     const double start = crossing->part.start;
     crossing->whole =
-        crossing->end - (crossing->at.t > start ? fc_straight_place(&in, start) : crossing->at.u);
+        crossing->end - (crossing->at.t > start ? fc_time_map_u(&in, start) : crossing->at.u);
     crossing->h = 0.0;
 }
 
@@ -100,9 +100,9 @@ void fc_begin_part(FcCrossing* crossing, int number) {
 }
 
 void fc_choose_variable(FcCrossing* crossing) {
-    const FcStraight graded = crossing->parts[crossing->number].in;
+    const FcTimeMap graded = crossing->parts[crossing->number].in;
     const bool sticks = fc_kind(crossing) == FC_STICKS && crossing->slips == 0;
-    const FcStraight wanted = sticks ? (FcStraight){0.0, INFINITY} : graded;
+    const FcTimeMap wanted = sticks ? (FcTimeMap){0.0, INFINITY} : graded;
     if (wanted.length != crossing->part.in.length) {
         take_variable(crossing, wanted);
     }
@@ -228,7 +228,7 @@ void fc_append_known(FcCrossing* crossing, const FcMap* map, double t) {
     crossing->evaluations += 1.0;
     const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
     const bool is_end = t == crossing->part.end;
-    reach(crossing, is_end ? crossing->end : fc_straight_place(&crossing->part.in, t), t, &at);
+    reach(crossing, is_end ? crossing->end : fc_time_map_u(&crossing->part.in, t), t, &at);
 }
 
 void fc_note_slip(FcCrossing* crossing, double start, double end, int side) {

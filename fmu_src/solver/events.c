@@ -103,7 +103,7 @@ static double close_to_bound(const FcCrossing* crossing, double D) {
     double distance = 1e-13 * D;
     if (fc_kind(crossing) == FC_STICKS) {
         const double of_time =
-            fabs(crossing->at.u) * fc_straight_pace(&crossing->part.in, crossing->at.u) + interval->duration;
+            fabs(crossing->at.u) * fc_time_map_dt_du(&crossing->part.in, crossing->at.u) + interval->duration;
         distance += 4e-16 * fc_largest_push(crossing) * of_time;
     } else { // an excess over the bound costs heat, whose tolerance goes with the path
         const double allowed =

@@ -1,5 +1,5 @@
 // The march: a bristle, or Coulomb's law, over an interval along a line or in the plane. It crosses the parts of the
-// interval (course.h) panel by panel (panel.h), from event to event (events.h). A line is a plane in which nothing moves
+// interval (time_map.h) panel by panel (panel.h), from event to event (events.h). A line is a plane in which nothing moves
 // transversely.
 #ifndef FC_SOLVER_MARCH_H
 #define FC_SOLVER_MARCH_H

@@ -214,7 +214,7 @@ static void with_library(const FcPlane* plane, const FcPart* part, double u, dou
     for (int i = 0; i < POINTS; i++) {
         const double place = u + (0.5 + FC_RADAU.node[i]) * h;
         nodes->t[i] = fc_part_time(part, place);
-        nodes->tau[i] = h * fc_straight_pace(&part->in, place);
+        nodes->tau[i] = h * fc_time_map_dt_du(&part->in, place);
         nodes->phase[i] = fc_drive_phase(drive, nodes->t[i]);
         const FcPlaneCoefficients at = fc_plane_coefficients(plane, nodes->t[i], nodes->phase[i]);
         nodes->V[i] = at.V.x;

@@ -3,7 +3,7 @@
 #define FC_SOLVER_NODES_H
 
 #include "solver/avx.h"
-#include "solver/course.h"
+#include "solver/time_map.h"
 #include "solver/panel_tables.h"
 
 typedef struct {

@@ -29,12 +29,12 @@ static void make(Line* line, double stiffness, FcLinearInput V) {
 
 // From a time to another one, in the variable t = length sinh(u), or t = u.
 static FcPanel panel_over(const Line* line, double start, double end, double length, const FcFrom* from) {
-    const FcStraight in = {0.0, length};
+    const FcTimeMap in = {0.0, length};
     const FcPart part = {.start = start, .end = end, .in = in, .side = 1, .narrow = 1.0};
-    const double u = fc_straight_place(&in, start);
+    const double u = fc_time_map_u(&in, start);
     FcNodes nodes;
     FcPanel panel;
-    fc_nodes_make(&line->plane, &part, u, fc_straight_place(&in, end) - u, &nodes);
+    fc_nodes_make(&line->plane, &part, u, fc_time_map_u(&in, end) - u, &nodes);
     fc_free_panel(&line->plane, &nodes, from, &panel);
     return panel;
 }

@@ -13,32 +13,32 @@
 //
 // the motion is smooth in u on either side of t_c. A Stribeck curve shortens L to the time in which V moves by V_S; where
 // the curve has ended a part is cut, and the variable is that of the layer.
-#ifndef FC_SOLVER_COURSE_H
-#define FC_SOLVER_COURSE_H
+#ifndef FC_SOLVER_TIME_MAP_H
+#define FC_SOLVER_TIME_MAP_H
 
 #include "model/plane.h"
 
 typedef struct {
     double center; // s, t_c
     double length; // s, L; infinite for t = t_c + u
-} FcStraight;
+} FcTimeMap;
 
-double fc_straight_time(const FcStraight* in, double u); // s
-double fc_straight_pace(const FcStraight* in, double u); // s, dt/du
-double fc_straight_place(const FcStraight* in, double t);
+double fc_time_map_t(const FcTimeMap* in, double u); // s
+double fc_time_map_dt_du(const FcTimeMap* in, double u); // s, dt/du
+double fc_time_map_u(const FcTimeMap* in, double t);
 
 // At a center |V|, |V'|, |V''| / 2 and |V'''| / 6: bounds of |V| beside it.
 typedef struct {
     double of[4];
-} FcMost;
+} FcSpeedBound;
 
 // A part of the interval, on one side of the center of its variable.
 typedef struct {
     double start, end; // s
-    FcStraight in;
+    FcTimeMap in;
     int side;      // along a line, the sign of V; 0 in the plane
-    double narrow; // the strip of u in which the force is analytic, over that of a reversal at which V' != 0
-    FcMost most;
+    double strip_ratio; // the strip of u in which the force is analytic, over that of a reversal at which V' != 0
+    FcSpeedBound speed_bound;
 } FcPart;
 
 double fc_part_time(const FcPart* part, double u); // s, within the part in spite of rounding
@@ -46,7 +46,7 @@ double fc_part_time(const FcPart* part, double u); // s, within the part in spit
 // An upper bound of |V| [m/s] at the distance x [s] from the center.
 static inline double fc_part_speed(const FcPart* part, double x) {
     x = fabs(x);
-    return part->most.of[0] + x * (part->most.of[1] + x * (part->most.of[2] + x * part->most.of[3]));
+    return part->speed_bound.of[0] + x * (part->speed_bound.of[1] + x * (part->speed_bound.of[2] + x * part->speed_bound.of[3]));
 }
 
 // Room for two centers a period over less than three periods, with up to four parts each.

@@ -1,6 +1,6 @@
 // The parts of an interval: they cover it, along a line V keeps its sign in each, and in the plane every minimum of |V|
 // is an end of one, as dense samples find them.
-#include "solver/course.h"
+#include "solver/time_map.h"
 
 #include "check.h"
 #include "random.h"
@@ -50,7 +50,7 @@ static void check_cover(const Course* course) {
             const double t = part->start + (part->end - part->start) * k / 64.0;
             const double V = fc_drive_V(&course->scene.drive, t);
             CHECK(!course->plane.on_line || part->side * V > -1e-9);
-            CHECK_WITHIN(fc_straight_time(&part->in, fc_straight_place(&part->in, t)), t, 1e-13 * course->h);
+            CHECK_WITHIN(fc_time_map_t(&part->in, fc_time_map_u(&part->in, t)), t, 1e-13 * course->h);
         }
     }
 }

@@ -1,4 +1,4 @@
-#include "solver/course.h"
+#include "solver/time_map.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,19 +8,19 @@
 #include "model/root.h"
 #include "solver/tuning.h"
 
-double fc_straight_time(const FcStraight* in, double u) {
+double fc_time_map_t(const FcTimeMap* in, double u) {
     return in->center + (isinf(in->length) ? u : in->length * sinh(u));
 }
 
-double fc_straight_pace(const FcStraight* in, double u) {
+double fc_time_map_dt_du(const FcTimeMap* in, double u) {
     return isinf(in->length) ? 1.0 : in->length * cosh(u);
 }
 
 double fc_part_time(const FcPart* part, double u) {
-    return fc_min(fc_max(fc_straight_time(&part->in, u), part->start), part->end);
+    return fc_min(fc_max(fc_time_map_t(&part->in, u), part->start), part->end);
 }
 
-double fc_straight_place(const FcStraight* in, double t) {
+double fc_time_map_u(const FcTimeMap* in, double t) {
     const double x = t - in->center;
     return isinf(in->length) ? x : asinh(x / in->length);
 }
@@ -113,19 +113,19 @@ typedef struct {
     double time;           // s
     double length, beyond; // s
     double edge;           // s, the distance at which the curve has ended; infinite if no part is cut
-    double narrow, narrow_beyond;
-    FcMost most;
+    double strip_ratio, strip_ratio_beyond;
+    FcSpeedBound speed_bound;
 } Center;
 
 static const Center NONE = {
-    .length = INFINITY, .beyond = INFINITY, .edge = INFINITY, .narrow = 1.0, .narrow_beyond = 1.0};
+    .length = INFINITY, .beyond = INFINITY, .edge = INFINITY, .strip_ratio = 1.0, .strip_ratio_beyond = 1.0};
 
-static FcMost most_at(const FcPlane* plane, double t) {
+static FcSpeedBound speed_bound_at(const FcPlane* plane, double t) {
     const FcDrive* drive = &plane->scene->drive;
     const FcPhase phase = fc_drive_phase(drive, t);
     const FcVelocity x = fc_drive_velocity_at_phase(drive, t, phase);
     const FcVelocity y = plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
-    return (FcMost){{hypot(x.V, y.V), hypot(x.rate, y.rate), hypot(x.curvature, y.curvature) / 2.0,
+    return (FcSpeedBound){{hypot(x.V, y.V), hypot(x.rate, y.rate), hypot(x.curvature, y.curvature) / 2.0,
                      hypot(x.third, y.third) / 6.0}};
 }
 
@@ -139,32 +139,32 @@ static double time_of_power(double a, int n, double change) {
 }
 
 // The time [s] in which V moves by change [m/s].
-static double time_of_change(const FcMost* most, double change) {
+static double time_of_change(const FcSpeedBound* bound, double change) {
     double least = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        least = fc_min(least, time_of_power(most->of[n], n, change));
+        least = fc_min(least, time_of_power(bound->of[n], n, change));
     }
     return least;
 }
 
 // The order with which V passes a center, seen over x [s].
-static int order_at(const FcMost* most, double x) {
-    const double by[] = {most->of[1], most->of[2] * x, most->of[3] * x * x};
+static int order_at(const FcSpeedBound* bound, double x) {
+    const double by[] = {bound->of[1], bound->of[2] * x, bound->of[3] * x * x};
     return by[0] >= by[1] && by[0] >= by[2] ? 1 : by[1] >= by[2] ? 2 : 3;
 }
 
 // L without a curve: the larger of eps and the layer, for the order for which it is least.
-static double length_of_layer(const FcPlane* plane, const FcMost* most, double path, double of_layer,
+static double length_of_layer(const FcPlane* plane, const FcSpeedBound* bound, double path, double of_layer,
                               double h, double* eps) {
     const bool relaxes = plane->scene->friction->model != FC_COULOMB &&
                          (!plane->on_line || plane->scene->friction->model != FC_ELASTIC_PLASTIC);
-    *eps = time_of_change(most, most->of[0]);
+    *eps = time_of_change(bound, bound->of[0]);
     if (!relaxes) {
         return plane->on_line ? INFINITY : *eps;
     }
     double layer = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        layer = fc_min(layer, time_of_power(most->of[n], n + 1, (n + 1) * path));
+        layer = fc_min(layer, time_of_power(bound->of[n], n + 1, (n + 1) * path));
     }
     return fc_max(*eps, of_layer * fc_min(layer, h));
 }
@@ -175,31 +175,31 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     const FcScene* scene = plane->scene;
     Center of = NONE;
     of.time = time;
-    of.most = most_at(plane, seen_from);
+    of.speed_bound = speed_bound_at(plane, seen_from);
     if (is_reversal) {
-        of.most.of[0] = 0.0;
+        of.speed_bound.of[0] = 0.0;
     }
     const double inside = fc_min(fc_max(time, 0.0), h);
     const FcPlaneCoefficients near =
         fc_plane_coefficients(plane, inside, fc_drive_phase(&scene->drive, inside));
     double eps;
-    of.length = length_of_layer(plane, &of.most, near.static_limit / near.sigma,
+    of.length = length_of_layer(plane, &of.speed_bound, near.static_limit / near.sigma,
                                 plane->on_line ? 1.0 : sqrt(tolerance), h, &eps);
     of.beyond = of.length;
     // A Stribeck curve, if V comes into it.
     const double V_S = scene->friction->V_S;
-    const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.most.of[0] < FC_END_OF_CURVE * V_S;
+    const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.speed_bound.of[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
-        const double of_curve = fc_max(time_of_change(&of.most, V_S), plane->on_line ? 0.0 : eps);
+        const double of_curve = fc_max(time_of_change(&of.speed_bound, V_S), plane->on_line ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
-            of.edge = time_of_change(&of.most, FC_END_OF_CURVE * V_S);
+            of.edge = time_of_change(&of.speed_bound, FC_END_OF_CURVE * V_S);
         }
         of.length = fc_min(of.length, of_curve);
     }
     if (isfinite(of.length)) { // a transient goes as e^(-x^(n + 1)), the curve as e^(-x^2n)
-        const int n = order_at(&of.most, of.length);
-        of.narrow_beyond = 2.0 / (n + 1.0);
-        of.narrow = has_curve ? 1.0 / n : of.narrow_beyond;
+        const int n = order_at(&of.speed_bound, of.length);
+        of.strip_ratio_beyond = 2.0 / (n + 1.0);
+        of.strip_ratio = has_curve ? 1.0 / n : of.strip_ratio_beyond;
         const double least = 0x1p-40 * fc_max(h, fabs(time)); // rounding of the times
         of.length = fc_max(of.length, least);
         of.beyond = fc_max(of.beyond, least);
@@ -260,8 +260,8 @@ static FcPart part_of(double start, double end, const Center* center, bool is_be
                     .end = end,
                     .in = {isfinite(length) ? center->time : 0.0, length},
                     .side = side,
-                    .narrow = is_beyond ? center->narrow_beyond : center->narrow,
-                    .most = center->most};
+                    .strip_ratio = is_beyond ? center->strip_ratio_beyond : center->strip_ratio,
+                    .speed_bound = center->speed_bound};
 }
 
 // A part on one side of its center, in two if a Stribeck curve ends in it.
