@@ -72,12 +72,12 @@ function(fc_add_avx core)
         return()
     endif()
     set(solver "${CMAKE_SOURCE_DIR}/fmu_src/solver")
-    add_library(${core}_avx OBJECT EXCLUDE_FROM_ALL "${solver}/nodes.c" "${solver}/free_panel.c" "${solver}/rise.c"
+    add_library(${core}_avx OBJECT EXCLUDE_FROM_ALL "${solver}/nodes.c" "${solver}/free_panel.c" "${solver}/dense_output.c"
                 "${solver}/body_panel.c")
     target_include_directories(${core}_avx PRIVATE "${CMAKE_SOURCE_DIR}/fmu_src")
     target_compile_options(${core}_avx PRIVATE -mavx $<TARGET_PROPERTY:${core},INTERFACE_COMPILE_OPTIONS>)
     target_compile_definitions(${core}_avx PRIVATE
-        fc_nodes_make=fc_nodes_make_avx fc_free_panel=fc_free_panel_avx fc_first_rise=fc_first_rise_avx
+        fc_nodes_make=fc_nodes_make_avx fc_free_panel=fc_free_panel_avx fc_first_upcrossing=fc_first_rise_avx
         fc_body_panel=fc_body_panel_avx fc_body_rates=fc_body_rates_avx fc_body_panel_rates=fc_body_panel_rates_avx)
     target_link_libraries(${core}_avx PRIVATE fc_options)
     target_compile_definitions(${core} PUBLIC FC_WITH_AVX)

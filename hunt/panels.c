@@ -16,7 +16,7 @@
 
 #include "friction_contact.h"
 #include "sequence.h"
-#include "solver/crossing.h"
+#include "solver/integrator.h"
 #include "solver/march.h"
 #include "trial.h"
 
@@ -32,17 +32,17 @@ typedef struct {
     const char* kind;
 } From;
 
-static From from_of(const FcCrossing* crossing, const char* kind) {
-    return (From){crossing->at.t, crossing->at.u, kind};
+static From from_of(const FcIntegrator* integrator, const char* kind) {
+    return (From){integrator->at.t, integrator->at.u, kind};
 }
 
-static void print_panel(const FcCrossing* crossing, From from, const FcPanel* panel) {
-    const double allowed = fc_allowed_force(crossing->interval);
-    const double made = (crossing->evaluations - evaluations) / FC_STAGES;
-    evaluations = crossing->evaluations;
+static void print_panel(const FcIntegrator* integrator, From from, const FcPanel* panel) {
+    const double allowed = fc_allowed_force(integrator->interval);
+    const double made = (integrator->evaluations - evaluations) / FC_STAGES;
+    evaluations = integrator->evaluations;
     if (lists) {
-        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %4.0f %s\n", from.t, crossing->at.t, from.u,
-               crossing->at.u, crossing->part.in.length, panel->z, panel->end_error / allowed,
+        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %4.0f %s\n", from.t, integrator->at.t, from.u,
+               integrator->at.u, integrator->part.in.length, panel->z, panel->end_error / allowed,
                panel->mean_error / allowed, made, from.kind);
     }
 }
@@ -54,17 +54,17 @@ static void print_panel(const FcCrossing* crossing, From from, const FcPanel* pa
     type __wrap_##name(__VA_ARGS__);                                                                         \
     type __wrap_##name(__VA_ARGS__)
 
-WRAP(void, fc_append_panel, FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
-    const From from = from_of(crossing, KINDS[fc_kind(crossing)]);
-    __real_fc_append_panel(crossing, nodes, panel, h);
-    print_panel(crossing, from, panel);
+WRAP(void, fc_accept_panel, FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel, double h) {
+    const From from = from_of(integrator, KINDS[fc_kind(integrator)]);
+    __real_fc_append_panel(integrator, nodes, panel, h);
+    print_panel(integrator, from, panel);
 }
 
-WRAP(void, fc_append_known, FcCrossing* crossing, const FcMap* map, double t) {
-    const From from = from_of(crossing, "known");
+WRAP(void, fc_accept_closed_form, FcIntegrator* integrator, const FcMap* map, double t) {
+    const From from = from_of(integrator, "known");
     const FcPanel none = {.z = NAN, .end_error = NAN, .mean_error = NAN};
-    __real_fc_append_known(crossing, map, t);
-    print_panel(crossing, from, &none);
+    __real_fc_append_known(integrator, map, t);
+    print_panel(integrator, from, &none);
 }
 
 WRAP(bool, fc_friction_contact_advance, FcFrictionContact* contact, double t, double h, FcMessage* message) {

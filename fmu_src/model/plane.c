@@ -4,7 +4,7 @@
 
 void fc_plane_make(FcPlane* plane, const FcScene* scene) {
     plane->scene = scene;
-    plane->on_line = !fc_drive_is_planar(&scene->drive);
+    plane->is_one_dimensional = !fc_drive_is_planar(&scene->drive);
     plane->static_friction = *scene->friction;
     if (scene->friction->model != FC_COULOMB) { // whose contact may be open
         plane->static_friction.model = FC_ELASTIC_PLASTIC;
@@ -21,7 +21,7 @@ FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhas
     const FcFriction* friction = plane->scene->friction;
     const FcCoefficients at = fc_scene_coefficients_at_phase(&plane->of_static_limit, t, at_t);
     const FcVector V = {at.V, fc_drive_V_y_at_phase(&plane->scene->drive, t, at_t)};
-    const double speed = plane->on_line ? fabs(V.x) : hypot(V.x, V.y);
+    const double speed = plane->is_one_dimensional ? fabs(V.x) : hypot(V.x, V.y);
     return (FcPlaneCoefficients){.V = V,
                                  .speed = speed,
                                  .sigma = at.sigma,

@@ -42,7 +42,7 @@ typedef struct {
     const FcScene* scene;
     FcFriction static_friction;
     FcScene of_static_limit;
-    bool on_line; // nothing moves transversely
+    bool is_one_dimensional; // nothing moves transversely
 } FcPlane;
 void fc_plane_make(FcPlane* plane, const FcScene* scene); // keeps the pointer
 

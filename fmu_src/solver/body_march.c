@@ -8,7 +8,7 @@
 #include "solver/body_stuck.h"
 #include "solver/march.h"
 #include "solver/panel_error.h"
-#include "solver/rise.h"
+#include "solver/dense_output.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
@@ -128,7 +128,7 @@ static Close event_function(const March* march, Event event, const FcNodes* node
 static double place_of(const March* march, Event event, const FcNodes* nodes, const FcBodyPanel* panel) {
     double f[POINTS];
     const Close close = event_function(march, event, nodes, panel, f);
-    return FC_FASTEST(fc_first_rise)(f, close.rounding);
+    return FC_FASTEST(fc_first_upcrossing)(f, close.rounding);
 }
 
 // The first event in the panel and its place. A panel that comes into a Stribeck curve is cut there before it is asked for
@@ -205,7 +205,7 @@ static bool make(March* march, double u, double h, FcNodes* nodes, FcBodyPanel* 
 // - The slopes of delta and v that the collocation does not resolve act at the end as a force, which lives until the bristle
 //   forgets it, and on the momentum.
 // - The quadratures act on work and heat.
-static double excess_of(const March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
+static double error_ratio_of(const March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
     const FcInterval* interval = march->interval;
     const FcKind kind = march->at.kind;
     const double m = march->body->m;
@@ -296,14 +296,14 @@ static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcB
     assert(*h > 0.0);
     for (int tries = 0;; tries++) {
         const bool is_solved = make(march, u, *h, nodes, panel);
-        const double excess = march->is_known ? 0.0 : is_solved ? excess_of(march, nodes, panel) : HUGE_VAL;
-        if (excess <= 1.0 || tries >= MAX_TRIES) {
+        const double error_ratio = march->is_known ? 0.0 : is_solved ? error_ratio_of(march, nodes, panel) : HUGE_VAL;
+        if (error_ratio <= 1.0 || tries >= MAX_TRIES) {
             const double grows =
-                tries > 0 ? 1.0 : fc_min(4.0, 0.9 * pow(fc_max(excess, 1e-30), -1.0 / 16.0));
+                tries > 0 ? 1.0 : fc_min(4.0, 0.9 * pow(fc_max(error_ratio, 1e-30), -1.0 / 16.0));
             march->h = march->is_known ? 0.0 : nodes->duration * grows;
             return is_solved;
         }
-        *h *= isfinite(excess) ? fc_min(0.9, fc_max(0.2, 0.9 * pow(excess, -1.0 / 14.0))) : 0.4;
+        *h *= isfinite(error_ratio) ? fc_min(0.9, fc_max(0.2, 0.9 * pow(error_ratio, -1.0 / 14.0))) : 0.4;
     }
 }
 

@@ -277,7 +277,7 @@ void fc_body_panel_rates(const FcPlane* plane, const FcBody* body, const FcBodyS
 
 bool fc_body_panel(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, double close,
                    FcNodes* nodes, FcBodyPanel* panel, double* solves) {
-    assert(body->m > 0.0 && close > 0.0 && plane->on_line);
+    assert(body->m > 0.0 && close > 0.0 && plane->is_one_dimensional);
     panel->delta[START] = start->delta;
     panel->v[START] = start->v;
     const bool is_solved = start->kind == FC_SLIPS

@@ -12,7 +12,7 @@ static const double MAX_DRIVEN = 1e3;
 
 bool fc_body_stuck_start(const FcPlane* plane, const FcBody* body, const FcBodyStart* at, double t,
                          FcBodyStuck* stuck) {
-    assert(body->m > 0.0 && plane->on_line && t >= 0.0);
+    assert(body->m > 0.0 && plane->is_one_dimensional && t >= 0.0);
     const FcScene* scene = plane->scene;
     const FcDrive* drive = &scene->drive;
     if (at->kind != FC_STICKS || !fc_scene_stiffness_is_constant(scene) ||

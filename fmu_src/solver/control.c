@@ -53,7 +53,7 @@ void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval
     control->span =
         FC_MAX_PHASE * rough_exp(rough_log(interval->tolerance) / ORDER) * fc_smooth_time(&interval->pace);
     control->longest = longest_for(interval->tolerance);
-    control->settles = plane->on_line && fc_scene_limit_is_constant(interval->scene) &&
+    control->settles = plane->is_one_dimensional && fc_scene_limit_is_constant(interval->scene) &&
                        !fc_has_stribeck_curve(interval->scene->friction);
 }
 
@@ -69,7 +69,7 @@ static double length_of_span(const FcTimeMap* in, double x, double span) {
 
 // In the plane a slip turns as a free bristle relaxes.
 static bool is_relaxing(const FcControl* control, FcKind kind) {
-    return kind == FC_RELAXES || (kind == FC_SLIPS && !control->plane->on_line);
+    return kind == FC_RELAXES || (kind == FC_SLIPS && !control->plane->is_one_dimensional);
 }
 
 // The lag of the force behind sigma and g, over the force, if the bristle relaxes at that rate: their rate, times the time
@@ -82,7 +82,7 @@ static double lag_for(const FcControl* control, const FcTimeMap* in, double rate
 
 // ln of the transient over the allowed error: the rest of the start's, and behind a reversal that of the force, which
 // follows V while the bristle relaxes.
-static double transient_at(const FcControl* control, const FcPart* part, const FcReached* at) {
+static double transient_at(const FcControl* control, const FcPart* part, const FcPosition* at) {
     const double x = at->t - part->in.center;
     double behind = control->log_transient;
     if (isfinite(part->in.length) && part->in.center >= 0.0 && x >= 0.0) {
@@ -93,11 +93,11 @@ static double transient_at(const FcControl* control, const FcPart* part, const F
 
 // The part of the force that is not smooth in t, over the force: a transient, the lag behind sigma and g, and the Stribeck
 // curve; in the plane all of it, since it turns.
-static double part_not_smooth(const FcControl* control, const FcReached* at, FcKind kind, double behind,
+static double part_not_smooth(const FcControl* control, const FcPosition* at, FcKind kind, double behind,
                               double lag, double V_end) {
     const FcFriction* friction = control->interval->scene->friction;
-    if (!control->plane->on_line || kind == FC_NO_BRISTLE) {
-        return control->plane->on_line ? 0.0 : 1.0;
+    if (!control->plane->is_one_dimensional || kind == FC_NO_BRISTLE) {
+        return control->plane->is_one_dimensional ? 0.0 : 1.0;
     }
     double part = 0.0;
     if (kind == FC_RELAXES) {
@@ -111,7 +111,7 @@ static double part_not_smooth(const FcControl* control, const FcReached* at, FcK
 }
 
 // The length in u up to which a graded panel is smooth, and resolves what is not smooth in t.
-static double graded_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
+static double graded_length(const FcControl* control, const FcPart* part, const FcPosition* at, FcKind kind,
                             double behind, double span, double longest, double h) {
     const FcInterval* interval = control->interval;
     const FcTimeMap* in = &part->in;
@@ -132,7 +132,7 @@ static double graded_length(const FcControl* control, const FcPart* part, const 
     return counts > 0.0 ? fc_min(h, strip / sinh_of_small(rough_log(1.0 + counts) / ORDER)) : h;
 }
 
-double fc_control_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
+double fc_control_length(const FcControl* control, const FcPart* part, const FcPosition* at, FcKind kind,
                          double end, double proposed) {
     const FcTimeMap* in = &part->in;
     const double left = end - at->u;
@@ -166,7 +166,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
     return h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
 }
 
-double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
+double fc_control_error_ratio(const FcControl* control, const FcPart* part, const FcNodes* nodes,
                          const FcPanel* panel, double* of_end) {
     const FcInterval* interval = control->interval;
     const double end = nodes->t[FC_STAGES - 1];
@@ -193,10 +193,10 @@ double fc_control_excess(const FcControl* control, const FcPart* part, const FcN
     return FC_SAFETY * mean_error / fc_max(FC_SHARE_OF_MEAN * whole, rounding);
 }
 
-double fc_control_shortens(double excess) {
-    return isfinite(excess) ? fc_max(0.3, fc_min(0.9, 0.9 * pow(excess, -1.0 / ORDER))) : 0.4;
+double fc_control_reduction(double error_ratio) {
+    return isfinite(error_ratio) ? fc_max(0.3, fc_min(0.9, 0.9 * pow(error_ratio, -1.0 / ORDER))) : 0.4;
 }
 
-double fc_control_grows(double excess) {
-    return excess > 0.0 ? fc_min(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 2.0;
+double fc_control_growth(double error_ratio) {
+    return error_ratio > 0.0 ? fc_min(2.0, 0.9 * pow(error_ratio, -1.0 / ORDER)) : 2.0;
 }

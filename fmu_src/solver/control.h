@@ -14,7 +14,7 @@ typedef struct {
     double u, t;     // of the part [1 or s], and s
     double rate;     // 1/s, r, or |V| / D of a stuck bristle
     double per_path; // 1/m, sigma / g
-} FcReached;
+} FcPosition;
 
 typedef struct {
     const FcPlane* plane;
@@ -33,17 +33,17 @@ enum { FC_MAX_REJECTIONS = 12 };
 void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval* interval, double transient);
 
 // The length in u of the next panel, at most up to `end` in u and, unless it is 0, `proposed`.
-double fc_control_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
+double fc_control_length(const FcControl* control, const FcPart* part, const FcPosition* at, FcKind kind,
                          double end, double proposed);
 
 // The factor by which the panel's errors of the mean are too large, and in *of_end that at the end, before it fades along the
 // path to the interval's end.
-double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
+double fc_control_error_ratio(const FcControl* control, const FcPart* part, const FcNodes* nodes,
                          const FcPanel* panel, double* of_end);
 
 // The factor by which a panel is shortened that was refused, and that by which the one after it may be longer if there
-// were refusals, for an excess.
-double fc_control_shortens(double excess);
-double fc_control_grows(double excess);
+// were refusals, for an error_ratio.
+double fc_control_reduction(double error_ratio);
+double fc_control_growth(double error_ratio);
 
 #endif

@@ -102,7 +102,7 @@ FC_INLINE void integrate(const double* weight, bool for_any, const double* P, co
 
 // sigma and g are constant along a line: over the path X, with D of the sign of V, delta = D + (delta_0 - D) e^(-X / D).
 // Deflection, work and heat are closed forms of the path; the impulse is the quadrature's. There is no damping.
-FC_INLINE void take_path(const FcNodes* nodes, const FcFrom* from, bool for_any, FcPanel* panel) {
+FC_INLINE void take_path(const FcNodes* nodes, const FcPanelStart* from, bool for_any, FcPanel* panel) {
     const FcCoefficients mean = {.V = nodes->moved[LAST], .sigma = panel->sigma, .limit = panel->limit};
     const FcMap path = fc_map_of_constant_scene(&mean, 1.0);
     const double start = for_any ? 0.0 : from->delta.x;
@@ -152,7 +152,7 @@ FC_INLINE void exact_integrals(const FcNodes* nodes, double held, double limit, 
     map->heat_offset += held * held / limit * nodes->side * rest;
 }
 
-FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, bool planar, bool for_any,
+FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, bool planar, bool for_any,
                     FcPanel* panel) {
     const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
     const double over_duration = 1.0 / nodes->duration;
@@ -170,7 +170,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     panel->limit = nodes->limit[LAST];
     panel->rate = rate[LAST] * over_duration;
 
-    if (relaxes && from->is_still && !planar) {
+    if (relaxes && from->has_constant_coefficients && !planar) {
         take_path(nodes, from, for_any, panel);
         return;
     }
@@ -238,11 +238,11 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);
 }
 
-void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
+void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel) {
     assert(nodes->duration >= 0.0 && (from->for_any || from->scale == 0.0));
-    if (plane->on_line && !from->for_any) {
+    if (plane->is_one_dimensional && !from->for_any) {
         take(plane, nodes, from, false, false, panel);
-    } else if (plane->on_line) {
+    } else if (plane->is_one_dimensional) {
         take(plane, nodes, from, false, true, panel);
     } else if (!from->for_any) {
         take(plane, nodes, from, true, false, panel);

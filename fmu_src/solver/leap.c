@@ -64,9 +64,9 @@ double fc_leap(const FcScene* scene, const FcSolverOptions* options, double peri
         }
         const double room = fc_min(longest, fc_min(periods - k, to_kink(scene, k)));
         // On a line periods begin at the bound, if the bristle slips along it for any time.
-        const bool on_line = slipped && !is_planar && total->slip_side != 0;
-        const bool forgets = slipped && !on_line;
-        const double phase = on_line ? total->slip_time : 0.0;
+        const bool is_one_dimensional = slipped && !is_planar && total->slip_side != 0;
+        const bool forgets = slipped && !is_one_dimensional;
+        const double phase = is_one_dimensional ? total->slip_time : 0.0;
         const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
         const double count = closes ? room - 1.0 : room;
         const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
@@ -77,7 +77,7 @@ double fc_leap(const FcScene* scene, const FcSolverOptions* options, double peri
                                .first = k,
                                .count = floor(count),
                                .phase = phase,
-                               .side = on_line ? total->slip_side : 0,
+                               .side = is_one_dimensional ? total->slip_side : 0,
                                .warm_up = forgets ? WARM_UP : 0};
         bool taken = false;
         if (k >= tries_at && block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
@@ -86,7 +86,7 @@ double fc_leap(const FcScene* scene, const FcSolverOptions* options, double peri
             if (phase > 0.0) {
                 take_part(scene, options, k, 0.0, phase, total);
             }
-            taken = (on_line || total->meetings == 0) && fc_block_take(&block, total);
+            taken = (is_one_dimensional || total->meetings == 0) && fc_block_take(&block, total);
             if (taken && closes) {
                 take_part(scene, options, k + block.count, phase, period, total);
             } else if (!taken) {

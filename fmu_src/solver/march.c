@@ -7,7 +7,7 @@
 
 #include "model/extremes.h"
 #include "model/regime.h"
-#include "solver/crossing.h"
+#include "solver/integrator.h"
 #include "solver/events.h"
 #include "solver/still.h"
 
@@ -33,26 +33,26 @@ static bool may_meet(const FcScene* scene, const FcScene* bound) {
 
 // The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
 // minus its change in the time 1 / r.
-static double first_transient(const FcCrossing* crossing, double scale) {
-    const FcVector delta = fc_crossing_delta(crossing);
-    const FcPlaneCoefficients at = crossing->first;
+static double first_transient(const FcIntegrator* integrator, double scale) {
+    const FcVector delta = fc_integrator_delta(integrator);
+    const FcPlaneCoefficients at = integrator->first;
     const FcVector now = fc_plane_coulomb(&at);
     const double r = at.sigma * at.speed / at.limit;
     FcVector next = now;
-    if (r * crossing->interval->duration > 1.0) {
-        const FcPlaneCoefficients after = fc_coefficients_at(crossing, 1.0 / r);
+    if (r * integrator->interval->duration > 1.0) {
+        const FcPlaneCoefficients after = fc_coefficients_at(integrator, 1.0 / r);
         next = fc_plane_coulomb(&after);
     }
     return hypot(at.sigma * delta.x - (2.0 * now.x - next.x), at.sigma * delta.y - (2.0 * now.y - next.y)) +
            at.sigma * scale;
 }
 
-static void start_control(FcCrossing* crossing, double scale) {
-    const int model = crossing->interval->scene->friction->model;
+static void start_control(FcIntegrator* integrator, double scale) {
+    const int model = integrator->interval->scene->friction->model;
     const bool has_transient =
-        model == FC_DAHL || model == FC_LUGRE || (model == FC_ELASTIC_PLASTIC && !crossing->plane->on_line);
-    fc_control_start(&crossing->control, crossing->plane, crossing->interval,
-                     has_transient ? first_transient(crossing, scale) : 0.0);
+        model == FC_DAHL || model == FC_LUGRE || (model == FC_ELASTIC_PLASTIC && !integrator->plane->is_one_dimensional);
+    fc_control_start(&integrator->control, integrator->plane, integrator->interval,
+                     has_transient ? first_transient(integrator, scale) : 0.0);
 }
 
 // The least progress over the part, in u. Derived: more than 12 events within it are rounding.
@@ -60,38 +60,38 @@ static const double PROGRESS = 0x1p-40;
 
 // Panels in a row that do not get on, at an event that rounding hides. After twice FC_MAX_REJECTIONS of them the march passes
 // over 2^-50 of the part, and then over twice as much each time. Over more than 2^-20 it gives up, and the step is refused.
-static void pass_over_rounding(FcCrossing* crossing, double before, int stalled) {
+static void pass_over_rounding(FcIntegrator* integrator, double before, int stalled) {
     const int doublings = stalled - 2 * FC_MAX_REJECTIONS;
     if (doublings > 30) {
-        crossing->along.offset = NAN;
+        integrator->along.offset = NAN;
         return;
     }
-    crossing->at.u = fc_min(crossing->end,
-                              fc_max(crossing->at.u, before + ldexp(0x1p-50, doublings) *
-                                                                   (fabs(before) + crossing->end - before)));
-    crossing->at.t = fc_part_time(&crossing->part, crossing->at.u);
+    integrator->at.u = fc_min(integrator->end,
+                              fc_max(integrator->at.u, before + ldexp(0x1p-50, doublings) *
+                                                                   (fabs(before) + integrator->end - before)));
+    integrator->at.t = fc_part_time(&integrator->part, integrator->at.u);
 }
 
-static void cross_part(FcCrossing* crossing, int number) {
-    fc_begin_part(crossing, number);
+static void integrate_part(FcIntegrator* integrator, int number) {
+    fc_begin_part(integrator, number);
     int stalled = 0;
-    while (crossing->evaluations <= FC_MAX_EVALUATIONS && !isnan(crossing->along.offset)) {
-        fc_choose_variable(crossing);
-        if (fc_part_is_crossed(crossing)) {
+    while (integrator->evaluations <= FC_MAX_EVALUATIONS && !isnan(integrator->along.offset)) {
+        fc_choose_variable(integrator);
+        if (fc_part_is_crossed(integrator)) {
             break;
         }
-        const double before = crossing->at.u;
-        if (!fc_take_still(crossing)) {
-            if (crossing->is_slipping) {
-                fc_slip_until_event(crossing);
+        const double before = integrator->at.u;
+        if (!fc_take_still(integrator)) {
+            if (integrator->is_slipping) {
+                fc_slip_until_event(integrator);
             } else {
-                fc_free_until_event(crossing);
+                fc_free_until_event(integrator);
             }
         }
-        stalled = crossing->at.u - before > PROGRESS * crossing->whole ? 0 : stalled + 1;
-        crossing->is_stalled = stalled > FC_MAX_REJECTIONS;
+        stalled = integrator->at.u - before > PROGRESS * integrator->length_u ? 0 : stalled + 1;
+        integrator->is_stalled = stalled > FC_MAX_REJECTIONS;
         if (stalled > 2 * FC_MAX_REJECTIONS) {
-            pass_over_rounding(crossing, before, stalled);
+            pass_over_rounding(integrator, before, stalled);
         }
     }
 }
@@ -106,10 +106,10 @@ static bool may_be_rigid(const FcInterval* interval) {
 }
 
 // Whether the force is Coulomb's, but for what rounding cannot see. Then the motion ends on the bound.
-static void choose_rigid(FcCrossing* crossing) {
-    if (may_be_rigid(crossing->interval)) {
-        fc_begin_part(crossing, 0);
-        crossing->is_rigid = crossing->interval->saturation <= RIGID * fc_path_left(crossing, 0.0);
+static void choose_rigid(FcIntegrator* integrator) {
+    if (may_be_rigid(integrator->interval)) {
+        fc_begin_part(integrator, 0);
+        integrator->is_rigid = integrator->interval->saturation <= RIGID * fc_path_left(integrator, 0.0);
     }
 }
 
@@ -144,60 +144,60 @@ static int make_intervals(const FcScene* scene, const FcSolverOptions* options, 
     return 2;
 }
 
-static void end_on_bound(FcCrossing* crossing) {
-    const FcPlaneCoefficients end = fc_coefficients_at(crossing, crossing->interval->duration);
+static void end_on_bound(FcIntegrator* integrator) {
+    const FcPlaneCoefficients end = fc_coefficients_at(integrator, integrator->interval->duration);
     FcVector F = fc_plane_coulomb(&end);
-    if (crossing->plane->on_line) { // V may end at 0, within rounding
-        F.x = crossing->part.side * end.limit;
+    if (integrator->plane->is_one_dimensional) { // V may end at 0, within rounding
+        F.x = integrator->part.side * end.limit;
     }
-    fc_set_delta(crossing, (FcVector){F.x / end.sigma, F.y / end.sigma});
-    crossing->slips = crossing->is_slipping =
-        crossing->interval->scene->friction->model == FC_ELASTIC_PLASTIC;
-    crossing->meetings += crossing->is_bounded;
+    fc_set_delta(integrator, (FcVector){F.x / end.sigma, F.y / end.sigma});
+    integrator->slips = integrator->is_slipping =
+        integrator->interval->scene->friction->model == FC_ELASTIC_PLASTIC;
+    integrator->meetings += integrator->is_bounded;
 }
 
-static void cross(FcCrossing* crossing) {
-    for (int i = 0; i < crossing->count; i++) {
-        cross_part(crossing, i);
+static void integrate(FcIntegrator* integrator) {
+    for (int i = 0; i < integrator->count; i++) {
+        integrate_part(integrator, i);
     }
-    if (crossing->is_rigid) {
-        end_on_bound(crossing);
+    if (integrator->is_rigid) {
+        end_on_bound(integrator);
     }
 }
 
 // A bristle at its bound begins in a slip, which it leaves at once if it is not pushed. One with static friction that
 // sticks there touches its bound.
-static void begin_at_bound(FcCrossing* crossing, FcBristle bristle) {
+static void begin_at_bound(FcIntegrator* integrator, FcBristle bristle) {
     const bool remembers_stick =
-        fc_has_static_friction(crossing->interval->scene->friction) && bristle.slips == 0;
-    const double D = fc_plane_radius(crossing->plane, &crossing->first, bristle.slips);
-    crossing->slips = bristle.slips;
-    if (crossing->is_bounded && remembers_stick) {
-        crossing->touches = fc_size(bristle) >= D * (1.0 - FC_ROUNDING_OF_BOUND);
-    } else if (crossing->is_bounded) {
-        crossing->is_slipping = fc_size(bristle) >= D * (1.0 - 1e-13);
+        fc_has_static_friction(integrator->interval->scene->friction) && bristle.slips == 0;
+    const double D = fc_plane_radius(integrator->plane, &integrator->first, bristle.slips);
+    integrator->slips = bristle.slips;
+    if (integrator->is_bounded && remembers_stick) {
+        integrator->touches = fc_size(bristle) >= D * (1.0 - FC_ROUNDING_OF_BOUND);
+    } else if (integrator->is_bounded) {
+        integrator->is_slipping = fc_size(bristle) >= D * (1.0 - 1e-13);
     }
-    crossing->meetings = crossing->is_slipping;
+    integrator->meetings = integrator->is_slipping;
 }
 
-static void put_result(const FcCrossing* crossing, FcStepResult* result) {
-    fc_map_apply(&crossing->along, result);
-    if (!crossing->plane->on_line) {
-        fc_map_apply_across(&crossing->across_map, result);
+static void put_result(const FcIntegrator* integrator, FcStepResult* result) {
+    fc_map_apply(&integrator->along, result);
+    if (!integrator->plane->is_one_dimensional) {
+        fc_map_apply_across(&integrator->across_map, result);
     }
-    result->heat += crossing->heat;
-    result->drag += crossing->drag;
-    result->meetings += crossing->meetings;
-    const bool slips = fc_has_static_friction(crossing->interval->scene->friction) && crossing->slips != 0;
-    result->slips = !slips ? 0 : crossing->plane->on_line && result->delta < 0.0 ? -1 : 1;
-    result->on_bound = crossing->is_slipping;
-    if (crossing->slip_length > 0.0) {
-        result->slip_time = crossing->slip_time;
-        result->slip_side = crossing->slip_side;
+    result->heat += integrator->heat;
+    result->drag += integrator->drag;
+    result->meetings += integrator->meetings;
+    const bool slips = fc_has_static_friction(integrator->interval->scene->friction) && integrator->slips != 0;
+    result->slips = !slips ? 0 : integrator->plane->is_one_dimensional && result->delta < 0.0 ? -1 : 1;
+    result->on_bound = integrator->is_slipping;
+    if (integrator->slip_length > 0.0) {
+        result->slip_time = integrator->slip_time;
+        result->slip_side = integrator->slip_side;
     }
-    result->by_start[0] = crossing->by_start[0];
-    result->by_start[1] = crossing->by_start[1];
-    result->evaluations = crossing->evaluations;
+    result->by_start[0] = integrator->by_start[0];
+    result->by_start[1] = integrator->by_start[1];
+    result->evaluations = integrator->evaluations;
 }
 
 // The displacement in an interval of the length h [s] from its start to any time, at the most [m].
@@ -222,23 +222,23 @@ static void march(const FcInterval* interval, FcStepResult* result) {
     const FcBristle bristle = fc_bristle_of(result);
     FcPlane plane;
     fc_plane_make(&plane, scene);
-    plane.on_line = !fc_is_planar(scene, bristle);
-    FcRoom room;
-    FcCrossing crossing;
+    plane.is_one_dimensional = !fc_is_planar(scene, bristle);
+    FcWorkspace workspace;
+    FcIntegrator integrator;
     const bool sticks = stays_stuck(interval, bristle);
-    fc_crossing_start(&crossing, &room, &plane, interval, sticks, result->evaluations);
-    crossing.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
-    fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
-    choose_rigid(&crossing);
-    if (fc_kind(&crossing) == FC_NO_BRISTLE) { // the deflection stands meanwhile
-        crossing.along.relaxation = crossing.across_map.relaxation = 0.0;
-        crossing.along.offset = crossing.across_map.offset = 0.0;
+    fc_integrator_start(&integrator, &workspace, &plane, interval, sticks, result->evaluations);
+    integrator.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
+    fc_set_delta(&integrator, (FcVector){bristle.delta, bristle.delta_y});
+    choose_rigid(&integrator);
+    if (fc_kind(&integrator) == FC_NO_BRISTLE) { // the deflection stands meanwhile
+        integrator.along.relaxation = integrator.across_map.relaxation = 0.0;
+        integrator.along.offset = integrator.across_map.offset = 0.0;
     } else {
-        begin_at_bound(&crossing, bristle);
+        begin_at_bound(&integrator, bristle);
     }
-    start_control(&crossing, 0.0);
-    cross(&crossing);
-    put_result(&crossing, result);
+    start_control(&integrator, 0.0);
+    integrate(&integrator);
+    put_result(&integrator, result);
 }
 
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
@@ -268,19 +268,19 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
     for (int i = 0; i < count; i++) {
         FcPlane plane;
         fc_plane_make(&plane, of[i].scene);
-        plane.on_line = across == NULL;
-        FcRoom room;
-        FcCrossing crossing;
-        fc_crossing_start(&crossing, &room, &plane, &of[i], false, *evaluations);
-        choose_rigid(&crossing);
-        crossing.from.for_any = true;
-        crossing.is_bounded = false;
-        crossing.scale = fc_max(start, crossing.first.limit / crossing.first.sigma);
-        start_control(&crossing, crossing.scale);
-        cross(&crossing);
-        *evaluations = crossing.evaluations;
-        fc_map_append(&along, &crossing.along);
-        fc_map_append(&over, &crossing.across_map);
+        plane.is_one_dimensional = across == NULL;
+        FcWorkspace workspace;
+        FcIntegrator integrator;
+        fc_integrator_start(&integrator, &workspace, &plane, &of[i], false, *evaluations);
+        choose_rigid(&integrator);
+        integrator.from.for_any = true;
+        integrator.is_bounded = false;
+        integrator.scale = fc_max(start, integrator.first.limit / integrator.first.sigma);
+        start_control(&integrator, integrator.scale);
+        integrate(&integrator);
+        *evaluations = integrator.evaluations;
+        fc_map_append(&along, &integrator.along);
+        fc_map_append(&over, &integrator.across_map);
     }
     if (across) {
         *across = over;

@@ -185,7 +185,7 @@ FC_INLINE bool with_series(const FcPlane* plane, const FcPart* part, double u, d
                             .cosine = drive->vibration.V_1 * c,
                             .sine = drive->vibration.V_1 * s};
     velocities(&along, drive->omega, x, cosine, sine, nodes->V, nodes->moved);
-    if (!plane->on_line) {
+    if (!plane->is_one_dimensional) {
         const double V_2 = drive->vibration.V_2;
         const Velocity across = {.V = fc_drive_V_y_at_phase(drive, middle, at),
                                  .still = drive->V_y.value + drive->V_y.rate * middle,
@@ -226,21 +226,21 @@ static void with_library(const FcPlane* plane, const FcPart* part, double u, dou
     for (int i = 0; i < POINTS; i++) {
         nodes->moved[i] = fc_drive_displacement(drive, nodes->t[START], nodes->t[i]);
         nodes->moved_y[i] =
-            plane->on_line ? 0.0 : fc_drive_displacement(&across, nodes->t[START], nodes->t[i]);
+            plane->is_one_dimensional ? 0.0 : fc_drive_displacement(&across, nodes->t[START], nodes->t[i]);
     }
 }
 
 void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes) {
-    assert(h >= 0.0 && (plane->on_line ? part->side * part->side <= 1 : part->side == 0));
+    assert(h >= 0.0 && (plane->is_one_dimensional ? part->side * part->side <= 1 : part->side == 0));
     if (!with_series(plane, part, u, h, nodes)) {
         with_library(plane, part, u, h, nodes);
     }
     nodes->side = part->side;
-    for (int i = 0; i < POINTS && plane->on_line; i++) {
+    for (int i = 0; i < POINTS && plane->is_one_dimensional; i++) {
         nodes->V_y[i] = nodes->moved_y[i] = 0.0;
         nodes->speed[i] = part->side * nodes->V[i];
     }
-    for (int i = 0; i < POINTS && !plane->on_line; i++) {
+    for (int i = 0; i < POINTS && !plane->is_one_dimensional; i++) {
         nodes->speed[i] = hypot(nodes->V[i], nodes->V_y[i]);
     }
     for (int i = 0; i < POINTS; i++) {

@@ -16,9 +16,9 @@ typedef struct {
     double speed;      // m/s, of the surfaces, for work and heat: the mean on a line, else the largest,
     double push;       // m/s, and of the bristle and its bound together
     bool for_any;      // the maps are for any start, else for this one alone
-    bool is_still;     // sigma and g of Dahl's law are constant: delta has a closed form
+    bool has_constant_coefficients;     // sigma and g of Dahl's law are constant: delta has a closed form
     bool limit_stands; // g is constant
-} FcFrom;
+} FcPanelStart;
 
 typedef struct {
     FcMap along, across;       // of delta and delta_y
@@ -31,7 +31,7 @@ typedef struct {
 } FcPanel;
 
 // The motion between meetings; does not set to_bound.
-void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel);
+void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel);
 FC_TWICE(fc_free_panel);
 
 // Coulomb's law.
@@ -39,6 +39,6 @@ void fc_coulomb_panel(const FcNodes* nodes, double speed, FcPanel* panel);
 
 // A slip along the bound on the side of from->delta, for that start alone. False if the panel is too long to be solved, in
 // the plane.
-bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel);
+bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel);
 
 #endif

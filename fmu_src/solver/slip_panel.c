@@ -67,8 +67,8 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
     return false;
 }
 
-bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
-    assert(from->push > 0.0 && (!plane->on_line || from->delta.y == 0.0));
+bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel) {
+    assert(from->push > 0.0 && (!plane->is_one_dimensional || from->delta.y == 0.0));
     FcPlaneCoefficients at[POINTS];
     FcPlaneBound bound[POINTS];
     FcVector n[POINTS];
@@ -77,7 +77,7 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
         bound[i] = fc_plane_bound(plane, &at[i], 1, nodes->t[i], nodes->phase[i]);
         n[i] = (FcVector){from->delta.x < 0.0 ? -1.0 : 1.0, 0.0};
     }
-    if (!plane->on_line) {
+    if (!plane->is_one_dimensional) {
         double a[POINTS];
         a[START] = atan2(from->delta.y, from->delta.x);
         if (!find_angles(nodes, bound, a[START], a)) {
@@ -125,7 +125,7 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
     panel->limit = nodes->limit[LAST];
     panel->rate = fc_product(n[LAST], at[LAST].V) / D_end;
     const double force = F_x[LAST];
-    if (plane->on_line && from->limit_stands && plane->scene->friction->sigma_1 == 0.0) { // it is exact
+    if (plane->is_one_dimensional && from->limit_stands && plane->scene->friction->sigma_1 == 0.0) { // it is exact
         map->impulse_offset = force * nodes->duration;
         map->work_offset = force * nodes->moved[LAST];
         map->heat_offset = map->work_offset - fabs(force) * (D_end - D_start);
@@ -135,7 +135,7 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
     double quadrature =
         fc_error_of_force(nodes, from->speed, 0.0, true, F_x, nodes->V) + fc_error_of_mean(nodes, heat);
     double unresolved = 0.0;
-    if (!plane->on_line) {
+    if (!plane->is_one_dimensional) {
         quadrature += fc_error_of_force(nodes, from->speed, 0.0, true, F_y, nodes->V_y);
         unresolved = fc_radau_unresolved(slope, fc_max(0.0, panel->z));
     }

@@ -8,32 +8,32 @@
 #include "solver/events.h"
 
 // Coulomb's law in a part, in which V keeps its sign.
-static void take_coulomb(FcCrossing* crossing) {
-    const double t = crossing->at.t;
-    const double end = crossing->part.end;
-    const double force = crossing->part.side * fc_coefficients_at(crossing, end).limit;
-    const double work = force * fc_drive_displacement(&crossing->interval->scene->drive, t, end);
+static void take_coulomb(FcIntegrator* integrator) {
+    const double t = integrator->at.t;
+    const double end = integrator->part.end;
+    const double force = integrator->part.side * fc_coefficients_at(integrator, end).limit;
+    const double work = force * fc_drive_displacement(&integrator->interval->scene->drive, t, end);
     const FcMap map = {.impulse_offset = force * (end - t), .work_offset = work, .heat_offset = work};
-    fc_append_known(crossing, &map, end);
+    fc_accept_closed_form(integrator, &map, end);
 }
 
 // ElasticPlastic without static friction surely slips while |V| is larger than |D'| may be.
-static bool slips_surely(FcCrossing* crossing) {
-    const FcInterval* interval = crossing->interval;
+static bool slips_surely(FcIntegrator* integrator) {
+    const FcInterval* interval = integrator->interval;
     const FcFriction* friction = interval->scene->friction;
     if (fc_has_static_friction(friction) || friction->sigma_1 != 0.0) {
         return false;
     }
     const double fastest = interval->pace.log_sigma * interval->saturation;
-    const int side = crossing->along.offset < 0.0 ? -1 : 1;
+    const int side = integrator->along.offset < 0.0 ? -1 : 1;
     FcDrive slower = interval->scene->drive;
     slower.V.value -= side * fastest;
-    const double t = crossing->at.t;
-    const double end = fc_drive_next_event(&slower, t, crossing->part.end).time;
+    const double t = integrator->at.t;
+    const double end = fc_drive_next_event(&slower, t, integrator->part.end).time;
     if (!(end > t && side * fc_drive_V(&slower, 0.5 * (t + end)) > 0.0)) {
         return false;
     }
-    const FcPlaneCoefficients at = fc_coefficients_at(crossing, end);
+    const FcPlaneCoefficients at = fc_coefficients_at(integrator, end);
     const double force = side * at.static_limit;
     const double delta = force / at.sigma;
     const double work = force * fc_drive_displacement(&interval->scene->drive, t, end);
@@ -41,9 +41,9 @@ static bool slips_surely(FcCrossing* crossing) {
                        .offset = delta,
                        .impulse_offset = force * (end - t),
                        .work_offset = work,
-                       .heat_offset = work - force * (delta - crossing->along.offset)};
-    fc_note_slip(crossing, t, end, side);
-    fc_append_known(crossing, &map, end);
+                       .heat_offset = work - force * (delta - integrator->along.offset)};
+    fc_note_slip(integrator, t, end, side);
+    fc_accept_closed_form(integrator, &map, end);
     return true;
 }
 
@@ -60,21 +60,21 @@ static double past_bound(void* context, double t) {
 }
 
 // Whether a stuck bristle meets its bound in the part; sets *end to when, and *way [m] to how far it is.
-static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
-    const FcInterval* interval = crossing->interval;
+static bool meets_in_part(FcIntegrator* integrator, double* end, double* way) {
+    const FcInterval* interval = integrator->interval;
     const FcDrive* drive = &interval->scene->drive;
-    const double t = crossing->at.t;
-    const int side = crossing->part.side;
-    const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
+    const double t = integrator->at.t;
+    const int side = integrator->part.side;
+    const FcPlaneCoefficients at = fc_coefficients_at(integrator, t);
     const double D = at.static_limit / at.sigma;
     const double moves = side * fc_drive_displacement(drive, t, *end);
-    *way = fc_max(0.0, D - side * crossing->along.offset);
-    if (!(crossing->is_bounded && moves > *way)) {
+    *way = fc_max(0.0, D - side * integrator->along.offset);
+    if (!(integrator->is_bounded && moves > *way)) {
         return false;
     }
     // One with static friction that is at its bound and hardly moves breaks away only if it is pushed.
     if (fc_has_static_friction(interval->scene->friction) && *way <= 1e-13 * D && moves <= 1e-9 * D &&
-        fc_falls_behind(crossing, (FcVector){side, 0.0})) {
+        fc_is_unloading(integrator, (FcVector){side, 0.0})) {
         return false;
     }
     if (*way == 0.0) {
@@ -83,28 +83,28 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
     }
     WayToBound of = {drive, t, *way, side};
     *end = fc_root_between(past_bound, &of, t, -*way, *end, moves - *way, DBL_EPSILON * D,
-                           &crossing->evaluations);
+                           &integrator->evaluations);
     return true;
 }
 
-static void stick_to_meeting(FcCrossing* crossing) {
-    const FcScene* scene = crossing->interval->scene;
+static void stick_to_meeting(FcIntegrator* integrator) {
+    const FcScene* scene = integrator->interval->scene;
     const FcDrive* drive = &scene->drive;
-    const double t = crossing->at.t;
-    const double sigma = crossing->interval->stiffness;
-    double end = crossing->part.end;
+    const double t = integrator->at.t;
+    const double sigma = integrator->interval->stiffness;
+    double end = integrator->part.end;
     double way;
-    const bool meets = meets_in_part(crossing, &end, &way);
-    const double x = meets ? crossing->part.side * way : fc_drive_displacement(drive, t, end);
+    const bool meets = meets_in_part(integrator, &end, &way);
+    const double x = meets ? integrator->part.side * way : fc_drive_displacement(drive, t, end);
     const FcMap map = {.offset = x,
                        .impulse_slope = sigma * (end - t),
                        .impulse_offset = sigma * fc_drive_displacement_integral(drive, t, end),
                        .work_slope = sigma * x,
                        .work_offset = 0.5 * sigma * x * x,
                        .drag_offset = scene->friction->sigma_1 != 0.0 ? fc_drive_square(drive, t, end) : 0.0};
-    fc_append_known(crossing, &map, end);
+    fc_accept_closed_form(integrator, &map, end);
     if (meets) {
-        fc_begin_slip(crossing, true);
+        fc_begin_slip(integrator, true);
     }
 }
 
@@ -114,12 +114,12 @@ static const double SHORT_PATH = 4.0;
 
 // A bristle of Dahl's law with constant sigma and g, over a part in which V is linear and keeps its sign: deflection, work and
 // heat are closed forms of the path X, and delta = D + (delta_0 - D) e^(-X / D). False if the path is too long.
-static bool relax_along_path(FcCrossing* crossing) {
-    const FcDrive* drive = &crossing->interval->scene->drive;
-    const double t = crossing->at.t;
-    const double end = crossing->part.end;
-    const double sigma = crossing->interval->stiffness;
-    const double D = 1.0 / crossing->at.per_path;
+static bool relax_along_path(FcIntegrator* integrator) {
+    const FcDrive* drive = &integrator->interval->scene->drive;
+    const double t = integrator->at.t;
+    const double end = integrator->part.end;
+    const double sigma = integrator->interval->stiffness;
+    const double D = 1.0 / integrator->at.per_path;
     const double X = fc_drive_displacement(drive, t, end);
     if (fc_drive_vibrates(drive) || fabs(X) > SHORT_PATH * D) {
         return false;
@@ -134,34 +134,34 @@ static bool relax_along_path(FcCrossing* crossing) {
     }
     const double lost = fc_dot(FC_POINTS, FC_RADAU.weight, less_1);
     map.impulse_slope = sigma * (end - t) * (1.0 + lost);
-    map.impulse_offset = -crossing->part.side * sigma * D * (end - t) * lost;
-    fc_append_known(crossing, &map, end);
+    map.impulse_offset = -integrator->part.side * sigma * D * (end - t) * lost;
+    fc_accept_closed_form(integrator, &map, end);
     return true;
 }
 
-bool fc_take_still(FcCrossing* crossing) {
-    const FcScene* scene = crossing->interval->scene;
+bool fc_take_still(FcIntegrator* integrator) {
+    const FcScene* scene = integrator->interval->scene;
     const FcFriction* friction = scene->friction;
-    if (!crossing->plane->on_line || !fc_scene_limit_is_constant(scene)) {
+    if (!integrator->plane->is_one_dimensional || !fc_scene_limit_is_constant(scene)) {
         return false;
     }
-    const bool is_still = fc_scene_stiffness_is_constant(scene);
+    const bool has_constant_coefficients = fc_scene_stiffness_is_constant(scene);
     const bool has_moving_curve = fc_has_stribeck_curve(friction) && !fc_drive_V_is_constant(&scene->drive);
-    switch (fc_kind(crossing)) {
+    switch (fc_kind(integrator)) {
     case FC_NO_BRISTLE:
         if (!has_moving_curve) {
-            take_coulomb(crossing);
+            take_coulomb(integrator);
         }
         return !has_moving_curve;
     case FC_SLIPS:
-        return friction->model == FC_ELASTIC_PLASTIC && slips_surely(crossing);
+        return friction->model == FC_ELASTIC_PLASTIC && slips_surely(integrator);
     case FC_STICKS:
-        if (is_still && crossing->slips == 0) {
-            stick_to_meeting(crossing);
+        if (has_constant_coefficients && integrator->slips == 0) {
+            stick_to_meeting(integrator);
             return true;
         }
         return false;
     default:
-        return crossing->from.is_still && relax_along_path(crossing);
+        return integrator->from.has_constant_coefficients && relax_along_path(integrator);
     }
 }

@@ -3,9 +3,9 @@
 #ifndef FC_SOLVER_STILL_H
 #define FC_SOLVER_STILL_H
 
-#include "solver/crossing.h"
+#include "solver/integrator.h"
 
 // Takes the present motion to its end or to that of the part; false if it has no closed form.
-bool fc_take_still(FcCrossing* crossing);
+bool fc_take_still(FcIntegrator* integrator);
 
 #endif

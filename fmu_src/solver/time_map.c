@@ -124,7 +124,7 @@ static FcSpeedBound speed_bound_at(const FcPlane* plane, double t) {
     const FcDrive* drive = &plane->scene->drive;
     const FcPhase phase = fc_drive_phase(drive, t);
     const FcVelocity x = fc_drive_velocity_at_phase(drive, t, phase);
-    const FcVelocity y = plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
+    const FcVelocity y = plane->is_one_dimensional ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
     return (FcSpeedBound){{hypot(x.V, y.V), hypot(x.rate, y.rate), hypot(x.curvature, y.curvature) / 2.0,
                      hypot(x.third, y.third) / 6.0}};
 }
@@ -157,10 +157,10 @@ static int order_at(const FcSpeedBound* bound, double x) {
 static double length_of_layer(const FcPlane* plane, const FcSpeedBound* bound, double path, double of_layer,
                               double h, double* eps) {
     const bool relaxes = plane->scene->friction->model != FC_COULOMB &&
-                         (!plane->on_line || plane->scene->friction->model != FC_ELASTIC_PLASTIC);
+                         (!plane->is_one_dimensional || plane->scene->friction->model != FC_ELASTIC_PLASTIC);
     *eps = time_of_change(bound, bound->of[0]);
     if (!relaxes) {
-        return plane->on_line ? INFINITY : *eps;
+        return plane->is_one_dimensional ? INFINITY : *eps;
     }
     double layer = INFINITY;
     for (int n = 1; n <= 3; n++) {
@@ -184,13 +184,13 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
         fc_plane_coefficients(plane, inside, fc_drive_phase(&scene->drive, inside));
     double eps;
     of.length = length_of_layer(plane, &of.speed_bound, near.static_limit / near.sigma,
-                                plane->on_line ? 1.0 : sqrt(tolerance), h, &eps);
+                                plane->is_one_dimensional ? 1.0 : sqrt(tolerance), h, &eps);
     of.beyond = of.length;
     // A Stribeck curve, if V comes into it.
     const double V_S = scene->friction->V_S;
     const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.speed_bound.of[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
-        const double of_curve = fc_max(time_of_change(&of.speed_bound, V_S), plane->on_line ? 0.0 : eps);
+        const double of_curve = fc_max(time_of_change(&of.speed_bound, V_S), plane->is_one_dimensional ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
             of.edge = time_of_change(&of.speed_bound, FC_END_OF_CURVE * V_S);
         }
@@ -297,7 +297,7 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MAX_PARTS], int count, 
     const Center left = seen_from_gap(before, start, end);
     const Center right = seen_from_gap(after, start, end);
     const double V = fc_drive_V(&plane->scene->drive, 0.5 * (start + end));
-    const int side = plane->on_line ? (V > 0.0) - (V < 0.0) : 0;
+    const int side = plane->is_one_dimensional ? (V > 0.0) - (V < 0.0) : 0;
     double middle = isinf(right.length)  ? end
                     : isinf(left.length) ? start
                                          : fc_min(fc_max(0.5 * (left.time + right.time), start), end);
@@ -314,14 +314,14 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MAX_PARTS], int count, 
 int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MAX_PARTS]) {
     assert(h > 0.0 && tolerance > 0.0);
     Center centers[MAX_CENTERS];
-    const int found = plane->on_line ? line_centers(plane, h, tolerance, centers)
+    const int found = plane->is_one_dimensional ? line_centers(plane, h, tolerance, centers)
                                      : plane_centers(plane, h, tolerance, centers);
     int count = 0;
     double start = 0.0;
     for (int i = 0; i <= found && start < h && count + 4 <= FC_MAX_PARTS; i++) {
         const bool has_after = i < found;
         const double end = has_after ? fc_min(fc_max(centers[i].time, start), h) : h;
-        if (end - start > (plane->on_line ? SAME_TIME : ROUNDING) * h) {
+        if (end - start > (plane->is_one_dimensional ? SAME_TIME : ROUNDING) * h) {
             count = add_gap(plane, parts, count, start, end, h, i > 0 ? &centers[i - 1] : NULL,
                             has_after ? &centers[i] : NULL);
             start = end;

@@ -3,7 +3,7 @@
 
 #include "check.h"
 #include "solver/panel.h"
-#include "solver/rise.h"
+#include "solver/dense_output.h"
 #include "solver/tuning.h"
 #include "table_1.h"
 
@@ -24,11 +24,11 @@ static void make(Line* line, double stiffness, FcLinearInput V) {
     const FcContactAtModulus at_E = fc_contact_at_modulus(&line->contact, E.value);
     fc_scene_make(&line->scene, &line->contact, &at_E, &DAHL, F_C);
     fc_plane_make(&line->plane, &line->scene);
-    line->plane.on_line = true;
+    line->plane.is_one_dimensional = true;
 }
 
 // From a time to another one, in the variable t = length sinh(u), or t = u.
-static FcPanel panel_over(const Line* line, double start, double end, double length, const FcFrom* from) {
+static FcPanel panel_over(const Line* line, double start, double end, double length, const FcPanelStart* from) {
     const FcTimeMap in = {0.0, length};
     const FcPart part = {.start = start, .end = end, .in = in, .side = 1, .narrow = 1.0};
     const double u = fc_time_map_u(&in, start);
@@ -42,7 +42,7 @@ static FcPanel panel_over(const Line* line, double start, double end, double len
 // What is left of a start after a panel of constant coefficients over z.
 static double left_after(double z) {
     const double V = 0.2, sigma = 1e6;
-    const FcFrom from = {.delta = {1e-5, 0.0}, .speed = V, .push = V, .for_any = true};
+    const FcPanelStart from = {.delta = {1e-5, 0.0}, .speed = V, .push = V, .for_any = true};
     Line line;
     make(&line, sigma, (FcLinearInput){V, 0.0});
     return 1.0 - panel_over(&line, 0.0, z * F_C / (sigma * V), INFINITY, &from).along.relaxation;
@@ -81,7 +81,7 @@ static void check_errors(double length, double stiffness) {
     const double V_rate = 1.8e5, layer = sqrt(2.0 * F_C / (stiffness * V_rate)), h = length * layer;
     Line line;
     make(&line, stiffness, (FcLinearInput){0.0, V_rate});
-    FcFrom from = {.delta = {-F_C / stiffness, 0.0}, .speed = V_rate * h, .push = V_rate * h};
+    FcPanelStart from = {.delta = {-F_C / stiffness, 0.0}, .speed = V_rate * h, .push = V_rate * h};
     const FcPanel panel = panel_over(&line, 0.0, h, layer, &from);
     FcStepResult exact = {.delta = from.delta.x};
     from.for_any = true;
@@ -126,9 +126,9 @@ static void processors_compute_the_same_numbers(void) {
     make(&line, 1e8, (FcLinearInput){0.0, 2e3});
     line.scene.friction = &LUGRE;
     fc_plane_make(&line.plane, &line.scene);
-    line.plane.on_line = true;
+    line.plane.is_one_dimensional = true;
     const FcPart part = {.end = 1e-5, .in = {0.0, 1e-6}, .side = 1, .narrow = 1.0};
-    const FcFrom from = {.delta = {1e-9, 0.0}, .speed = 0.02, .push = 0.02, .for_any = true, .scale = 1e-8};
+    const FcPanelStart from = {.delta = {1e-9, 0.0}, .speed = 0.02, .push = 0.02, .for_any = true, .scale = 1e-8};
     fc_nodes_make(&line.plane, &part, 0.1, 1.3, &nodes[0]);
     fc_free_panel(&line.plane, &nodes[0], &from, &panels[0]);
     FC_FASTEST(fc_nodes_make)(&line.plane, &part, 0.1, 1.3, &nodes[1]);
@@ -136,7 +136,7 @@ static void processors_compute_the_same_numbers(void) {
     CHECK(memcmp(&nodes[0], &nodes[1], sizeof nodes[0]) == 0);
     CHECK(memcmp(&panels[0], &panels[1], sizeof panels[0]) == 0);
     const double* f = nodes[0].moved;
-    CHECK(fc_first_rise(f, f[4]) == FC_FASTEST(fc_first_rise)(f, f[4]));
+    CHECK(fc_first_upcrossing(f, f[4]) == FC_FASTEST(fc_first_upcrossing)(f, f[4]));
 }
 
 int main(void) {

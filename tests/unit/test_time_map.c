@@ -35,7 +35,7 @@ static void make(Course* course, FcLinearInput V, FcLinearInput V_y, FcVibration
     const FcContactAtModulus at_E = fc_contact_at_modulus(&course->contact, 58e9);
     fc_scene_make(&course->scene, &course->contact, &at_E, &course->friction, F_C);
     fc_plane_make(&course->plane, &course->scene);
-    course->plane.on_line = !fc_is_planar(&course->scene, (FcBristle){0});
+    course->plane.is_one_dimensional = !fc_is_planar(&course->scene, (FcBristle){0});
     course->h = h;
     course->count = fc_parts(&course->plane, h, 1e-6, course->parts);
 }
@@ -49,7 +49,7 @@ static void check_cover(const Course* course) {
         for (int k = 1; k < 64; k++) {
             const double t = part->start + (part->end - part->start) * k / 64.0;
             const double V = fc_drive_V(&course->scene.drive, t);
-            CHECK(!course->plane.on_line || part->side * V > -1e-9);
+            CHECK(!course->plane.is_one_dimensional || part->side * V > -1e-9);
             CHECK_WITHIN(fc_time_map_t(&part->in, fc_time_map_u(&part->in, t)), t, 1e-13 * course->h);
         }
     }

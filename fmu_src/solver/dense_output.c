@@ -1,4 +1,4 @@
-#include "solver/rise.h"
+#include "solver/dense_output.h"
 
 #include <assert.h>
 #include <stdbool.h>
@@ -44,7 +44,7 @@ static void find_samples(const double f[POINTS], double value[FC_SAMPLES + 1]) {
     memcpy(value + 1, after, sizeof after);
 }
 
-double fc_first_rise(const double at_points[FC_POINTS], double over) {
+double fc_first_upcrossing(const double at_points[FC_POINTS], double over) {
     assert(over >= 0.0);
     double FC_PAIRED f[POINTS];
     double largest = at_points[0];

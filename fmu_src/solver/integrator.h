@@ -1,6 +1,6 @@
 // Crossing a part of the interval, panel by panel: what all motions have in common.
-#ifndef FC_SOLVER_CROSSING_H
-#define FC_SOLVER_CROSSING_H
+#ifndef FC_SOLVER_INTEGRATOR_H
+#define FC_SOLVER_INTEGRATOR_H
 
 #include "solver/control.h"
 
@@ -14,13 +14,13 @@ typedef struct {
     const FcPart* parts;
     int count, number;
     FcPart part; // the present one, in the variable of the present motion
-    FcReached at;
-    double end, whole; // of the part, in u
+    FcPosition at;
+    double end, length_u; // of the part, in u
     double h;          // of the next panel, in u; 0 if nothing proposes one
-    double* way;       // m, the path after each part, at the least; found if it is needed
+    double* remaining_path;       // m, the path after each part, at the least; found if it is needed
     // The bristle, and the sums.
     FcMap along, across_map;
-    FcFrom from;      // of the next panel, and whether the maps are for any start
+    FcPanelStart from;      // of the next panel, and whether the maps are for any start
     double scale;     // m, of all these starts
     int slips;        // FcBristle
     bool is_slipping; // along its bound
@@ -36,51 +36,51 @@ typedef struct {
     double slip_time;     // s
     int slip_side;
     double evaluations;
-} FcCrossing;
+} FcIntegrator;
 
-// The memory of the parts of a crossing, which is filled as far as there are any.
+// The memory of the parts of a integrator, which is filled as far as there are any.
 typedef struct {
     FcPart parts[FC_MAX_PARTS];
-    double way[FC_MAX_PARTS];
-} FcRoom;
+    double remaining_path[FC_MAX_PARTS];
+} FcWorkspace;
 
-// A crossing of the interval from its start on, with its parts, or in one part; the bristle is to be set.
-void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane, const FcInterval* interval,
+// A integrator of the interval from its start on, with its parts, or in one part; the bristle is to be set.
+void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const FcPlane* plane, const FcInterval* interval,
                        bool in_one_part, double evaluations);
 
-FcKind fc_kind(const FcCrossing* crossing);
-FcVector fc_crossing_delta(const FcCrossing* crossing); // m, now
-void fc_set_delta(FcCrossing* crossing, FcVector delta);
-FcPlaneCoefficients fc_coefficients_at(const FcCrossing* crossing, double t);
+FcKind fc_kind(const FcIntegrator* integrator);
+FcVector fc_integrator_delta(const FcIntegrator* integrator); // m, now
+void fc_set_delta(FcIntegrator* integrator, FcVector delta);
+FcPlaneCoefficients fc_coefficients_at(const FcIntegrator* integrator, double t);
 
 // The largest velocity [m/s] of the bristle and its bound together.
-double fc_largest_push(const FcCrossing* crossing);
+double fc_largest_push(const FcIntegrator* integrator);
 
 // The path from the place reached in the present part to the interval's end, at the least [m].
-double fc_path_left(FcCrossing* crossing, double t);
+double fc_path_left(FcIntegrator* integrator, double t);
 
 // Begins a part, and the same part again in the variable of the present motion: a stuck bristle moves smoothly in t, one
 // that slips or relaxes in u.
-void fc_begin_part(FcCrossing* crossing, int number);
-void fc_choose_variable(FcCrossing* crossing);
-bool fc_part_is_crossed(const FcCrossing* crossing);
+void fc_begin_part(FcIntegrator* integrator, int number);
+void fc_choose_variable(FcIntegrator* integrator);
+bool fc_part_is_crossed(const FcIntegrator* integrator);
 
 // Makes the panel of the length h [u] at the present place, which is too long for its equation if it is false.
-bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel);
+bool fc_make_panel(FcIntegrator* integrator, double h, FcNodes* nodes, FcPanel* panel);
 // The same of a part of a panel that was solved.
-void fc_make_again(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel);
+void fc_resolve_shorter(FcIntegrator* integrator, double h, FcNodes* nodes, FcPanel* panel);
 
 // Makes the next panel, as long as it is accurate; returns its length in u.
 // - It is planned, made and judged, and shortened until its errors are small enough.
 // - After FC_MAX_REJECTIONS of them it is accepted. If it could not be solved, the deflection becomes no number, for which
 //   the step is refused.
-double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel);
+double fc_step_adaptive(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel);
 
 // Adds the panel's integrals, and goes to its end.
-void fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h);
+void fc_accept_panel(FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel, double h);
 // The same of a closed form that ends at the time t [s].
-void fc_append_known(FcCrossing* crossing, const FcMap* map, double t);
+void fc_accept_closed_form(FcIntegrator* integrator, const FcMap* map, double t);
 // Notes a slip along a line, for a leap.
-void fc_note_slip(FcCrossing* crossing, double start, double end, int side);
+void fc_note_slip(FcIntegrator* integrator, double start, double end, int side);
 
 #endif

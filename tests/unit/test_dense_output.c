@@ -1,5 +1,5 @@
 // The first rise of a polynomial that is known at the points of a panel: closed forms, and dense samples of random ones.
-#include "solver/rise.h"
+#include "solver/dense_output.h"
 
 #include "check.h"
 #include "random.h"
@@ -24,7 +24,7 @@ static double rise_of(const Polynomial* p, double over) {
     for (int i = 0; i < FC_POINTS; i++) {
         f[i] = value(p, 0.5 + FC_RADAU.node[i]);
     }
-    return fc_first_rise(f, over);
+    return fc_first_upcrossing(f, over);
 }
 
 static void straight_lines(void) {
