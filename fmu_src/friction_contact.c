@@ -47,7 +47,7 @@ static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E
 }
 
 // The load after a step in which it moves: 0 if the step opens or closes the contact at its very end
-// (fc_scene_piece).
+// (fc_scene_segment).
 static double load_after(FcLinearInput load, double h) {
     const double after = fc_input_after(load, h);
     return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fc_min(after, 0.0) : after;
@@ -116,7 +116,7 @@ static FcScene scene_with_body(const FcFrictionContact* contact, const FcScene* 
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcScene before = fc_body_scene(scene, &body, bristle);
-    return fc_body_scene(scene, &body, fc_jump(&before, t, &contact->state.past, &bristle, &heat));
+    return fc_body_scene(scene, &body, fc_input_jump(&before, t, &contact->state.past, &bristle, &heat));
 }
 
 static FcScene present_scene(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
@@ -343,7 +343,7 @@ FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    return fc_jump(scene, contact->state.time, &contact->state.past, &bristle, &heat);
+    return fc_input_jump(scene, contact->state.time, &contact->state.past, &bristle, &heat);
 }
 
 double* fc_input_of(FcVariables* v, FcInput input) {
@@ -453,11 +453,11 @@ static const double SMALLEST_TOLERANCE = 1e-12;
 static double force_of_bristle(const FcScene* scene, double h, FcBristle from) {
     const FcFriction* friction = scene->friction;
     double limit = fc_scene_mean_limit(scene, 0.0);
-    if (fc_scene_has_pieces(scene)) {
+    if (fc_scene_has_segments(scene)) {
         limit = fc_max(limit, fc_scene_mean_limit(scene, h));
     }
     const double delta = fc_size(from);
-    const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
+    const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_separated(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);
     return fc_max(fc_max(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
@@ -505,7 +505,7 @@ static FcBristle first_bristle(FcFrictionContact* contact) {
     }
     FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     scene.drive.V.rate = 0.0; // a mass keeps its velocity
-    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
+    const FcBristle start = fc_project_onto_bound(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
     const FcSolverOptions options = solver_options(v, &scene, period, start);
     FcVector force;
@@ -535,7 +535,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     v->delta_y = first.delta_y;
     state->slips = fc_side_of_slip(first);
     const FcScene scene = fc_friction_contact_scene_moving(&fresh, NULL);
-    const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_reach(&scene, first));
+    const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_project_onto_bound(&scene, first));
     const bool is_within = fc_is_bounded(&v->friction) && fc_size(first) <= within;
     state->past = is_within ? fc_past(&scene) : (FcPast){.sigma = 0.0}; // an error_ratio becomes heat
     if (v->solver.evaluations > FC_MAX_EVALUATIONS) {
@@ -661,7 +661,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcScene* seen = has_body ? &moved : &scene;
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const FcBristle start = fc_jump(seen, t, &before->past, &bristle, &heat);
+    const FcBristle start = fc_input_jump(seen, t, &before->past, &bristle, &heat);
     FcStepResult result;
     const FcMethod method = (FcMethod)v->solver.method;
     const bool moves = !fc_drive_is_constant(&scene.drive);
@@ -699,8 +699,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcScene* end = ends_elsewhere ? &moved : &scene;
     FcVector force;
-    const bool slips = result.on_bound && !fc_scene_is_loose(end);
-    const FcBristle reached = slips ? fc_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
+    const bool slips = result.on_bound && !fc_scene_is_separated(end);
+    const FcBristle reached = slips ? fc_scale_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
     if (!find_force(end, &response, &body, reached, &force, message)) {
         return false;
     }

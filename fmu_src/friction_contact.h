@@ -12,7 +12,7 @@
 #include "model/regime.h"
 #include "model/scene.h"
 #include "solver/body.h"
-#include "solver/jump.h"
+#include "solver/input_jump.h"
 
 // The values of modelDescription.xml.
 typedef enum { FC_STATE_GIVEN = 1, FC_STATE_SETTLED = 2 } FcInitialState;

@@ -146,7 +146,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATO
                               (closed_by <= 0.0 || fc_scene_stiffness(&now.scene, 0.0) > 0.0);
         z[3] = was_open ? -closed_by : closed_by;
     }
-    if (!fc_scene_is_loose(&now.scene)) {
+    if (!fc_scene_is_separated(&now.scene)) {
         if (v->friction.model != FC_ELASTIC_PLASTIC) {
             const FcDrive* drive = &now.scene.drive;
             z[0] = fc_drive_V(drive, 0.0) + SLANT * fc_drive_V_y(drive, 0.0);
@@ -183,7 +183,7 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     View now;
     look(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
-    const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound(&now.plane, now.slips, 0.0).D;
+    const double D = fc_scene_is_separated(&now.scene) ? 0.0 : fc_bound(&now.plane, now.slips, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const double size = fc_size(bristle);
     const double onto = size > 0.0 ? D / size : 0.0;
@@ -236,7 +236,7 @@ static void begin_regime(FcFrictionContact* contact) {
     look(contact, &now);
     double heat;
     const FcBristle before = fc_friction_contact_bristle(contact);
-    FcBristle bristle = fc_jump(&now.scene, state->time, &state->past, &before, &heat);
+    FcBristle bristle = fc_input_jump(&now.scene, state->time, &state->past, &before, &heat);
     if (bristle.slips != 0 && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.slips = 0;
     }
@@ -257,7 +257,7 @@ static void add_drop(FcFrictionContact* contact, FcVector before) {
     const FcVector drop = {v->delta - before.x, v->delta_y - before.y};
     const FcVector V = {fc_drive_V(&scene.drive, 0.0), fc_drive_V_y(&scene.drive, 0.0)};
     const double work = v->friction.sigma_1 * fc_product(drop, V);
-    if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
+    if (fc_has_static_friction(&v->friction) && !fc_scene_is_separated(&scene) && isfinite(v->W_f + work)) {
         v->W_f += work;
         move_to(contact, (FcVector){v->delta, v->delta_y}, work);
     }
@@ -371,7 +371,7 @@ bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
     }
     const double period = 1.0 / now.scene.drive.vibration.f;
     double ahead = LONGEST_AHEAD * period;
-    if (fc_is_bounded(now.scene.friction) && !fc_scene_is_loose(&now.scene)) {
+    if (fc_is_bounded(now.scene.friction) && !fc_scene_is_separated(&now.scene)) {
         ahead = fc_is_planar(&now.scene, fc_friction_contact_bristle(contact))
                     ? PART_OF_PERIOD * period
                     : time_to_turn(&now, contact->state.variables.delta, period, ahead);
@@ -401,7 +401,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COU
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const FcHybrid* hybrid = &contact->state.hybrid;
-    const bool open = fc_scene_is_loose(&scene);
+    const bool open = fc_scene_is_separated(&scene);
     if (open && hybrid->nominal_delta > 0.0) {
         set_nominals(nominals, hybrid->nominal_delta, hybrid->nominal_energy);
         return true;

@@ -52,7 +52,7 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
     }
     const FcVariables* v = &held->state.variables;
     const FcScene scene = fc_friction_contact_scene(held);
-    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
+    const FcBristle start = fc_project_onto_bound(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
         .tolerance = tolerance, .force = fc_max(scale, DBL_MIN), .step_size = v->solver.stepSize};
@@ -199,7 +199,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     const FcScene scene = fc_friction_contact_scene(&held);
     const double force = fc_scene_mean_limit(&scene, 0.0);
     // 0: an input that counts for nothing, or no contact.
-    double range = fc_scene_is_loose(&scene) ? 0.0 : first_range(&held, &scene, variable);
+    double range = fc_scene_is_separated(&scene) ? 0.0 : first_range(&held, &scene, variable);
     const double usual = range != 0.0 ? force / fabs(range) : 0.0;
     double least = INFINITY;
     *slope = range == 0.0 ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};

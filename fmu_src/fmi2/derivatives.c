@@ -260,7 +260,7 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
         const double change = is_known(info) ? fc_variable_value(along, info) : 0.0;
-        if (change != 0.0 && is_led && !fc_scene_is_loose(&scene)) {
+        if (change != 0.0 && is_led && !fc_scene_is_separated(&scene)) {
             const FcVector moves = reached_by(contact, info);
             direction.delta += change * moves.x;
             direction.delta_y += change * moves.y;

@@ -49,8 +49,8 @@ static FcBristle moved_onto(const AtBound* of, FcBristle bristle) {
     return bristle;
 }
 
-FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
-    if (fc_scene_is_loose(scene)) {
+FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle) {
+    if (fc_scene_is_separated(scene)) {
         return (FcBristle){0};
     }
     if (!fc_is_bounded(scene->friction)) {
@@ -74,14 +74,14 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     return bristle;
 }
 
-FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle) {
+FcBristle fc_scale_onto_bound(const FcScene* scene, FcBristle bristle) {
     AtBound of;
     find_bound(&of, scene, bristle);
     return moved_onto(&of, bristle);
 }
 
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
-    if (!fc_is_bounded(scene->friction) || fc_scene_is_loose(scene) ||
+    if (!fc_is_bounded(scene->friction) || fc_scene_is_separated(scene) ||
         (fc_has_static_friction(scene->friction) && bristle.slips == 0)) {
         return FC_FREE;
     }
@@ -97,7 +97,7 @@ static const double HYSTERESIS = 1e-10;
 
 void fc_regime_indicators(const FcScene* scene, FcRegime regime, FcBristle bristle, double z[2]) {
     z[0] = z[1] = 1.0;
-    if (!fc_is_bounded(scene->friction) || fc_scene_is_loose(scene)) {
+    if (!fc_is_bounded(scene->friction) || fc_scene_is_separated(scene)) {
         return;
     }
     AtBound of;
@@ -132,7 +132,7 @@ static Parts slipping_parts(const AtBound* of, FcBristle bristle) {
 }
 
 static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
-    if (fc_scene_is_loose(scene)) {
+    if (fc_scene_is_separated(scene)) {
         return (Parts){.V = {fc_drive_V(&scene->drive, 0.0), fc_drive_V_y(&scene->drive, 0.0)}};
     }
     if (regime != FC_FREE) {
@@ -282,7 +282,7 @@ static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, 
 }
 
 static Parts parts_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along) {
-    if (fc_scene_is_loose(scene)) {
+    if (fc_scene_is_separated(scene)) {
         return (Parts){.V = {along->V, along->V_y}};
     }
     AtBound of;

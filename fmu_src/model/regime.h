@@ -34,11 +34,11 @@ typedef enum { FC_SLIPS_BACK = -1, FC_FREE = 0, FC_SLIPS_FORWARD = 1 } FcRegime;
 
 // The state at the start of the scene: a bristle beyond its bound is moved onto it, a bristle without contact
 // becomes 0, and a slipping bristle that is not pushed sticks.
-FcBristle fc_reach(const FcScene* scene, FcBristle bristle);
+FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle);
 
 // A slipping bristle, moved onto its bound at the start of the scene. If the load falls by decades in a step,
 // the bound at its end is known to fewer digits from its start.
-FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle);
+FcBristle fc_scale_onto_bound(const FcScene* scene, FcBristle bristle);
 
 // The regime of a bristle that is within its bound.
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle);

@@ -68,8 +68,8 @@ double fc_scene_closed_by(const FcScene* scene) {
                : fc_max(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
 }
 
-// The largest factor by which a load moves in a piece. Chosen empirically: a larger factor needs finer
-// panels, a smaller one more pieces.
+// The largest factor by which a load moves in a segment. Chosen empirically: a larger factor needs finer
+// panels, a smaller one more segments.
 static const double LOAD_OF_PIECE = 4.0;
 
 // The contact at the modulus of the time t.
@@ -91,11 +91,11 @@ static double time_to_edge(const FcScene* scene, double rest) {
     return time;
 }
 
-double fc_scene_piece(FcScene* scene, double rest, double whole) {
+double fc_scene_segment(FcScene* scene, double rest, double whole) {
     const FcDrive* drive = &scene->drive;
     const bool by_load = follows_load(scene);
     const double rate = by_load ? drive->load.rate : drive->d.rate;
-    if (!fc_scene_has_pieces(scene)) {
+    if (!fc_scene_has_segments(scene)) {
         return rest;
     }
     // Time until the contact opens or closes; negative if this lies behind.

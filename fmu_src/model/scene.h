@@ -48,12 +48,12 @@ static inline bool fc_scene_depends_on_d(const FcScene* scene) {
 }
 
 // Whether the bristle has lost its contact at the start: its force and its deflection are 0.
-static inline bool fc_scene_is_loose(const FcScene* scene) {
+static inline bool fc_scene_is_separated(const FcScene* scene) {
     return scene->is_open && fc_scene_depends_on_d(scene);
 }
 
 // Whether the load, given or from d, moves, if the law uses it.
-static inline bool fc_scene_has_pieces(const FcScene* scene) {
+static inline bool fc_scene_has_segments(const FcScene* scene) {
     return fc_scene_depends_on_d(scene) && (scene->drive.load.rate != 0.0 || scene->drive.d.rate != 0.0);
 }
 
@@ -65,10 +65,10 @@ static inline bool fc_scene_has_pieces(const FcScene* scene) {
 // which it opens [m]. At 0 and below the contact is open.
 double fc_scene_closed_by(const FcScene* scene);
 
-// The time [s], up to `rest`, over which the scene is one piece from its start on, in a step of `whole` [s]:
+// The time [s], up to `rest`, over which the scene is one segment from its start on, in a step of `whole` [s]:
 // until the contact opens or closes, or the load, given or from d, has moved by a factor of 4. Sets is_open
 // if the contact opens within 2^-44 of the step.
-double fc_scene_piece(FcScene* scene, double rest, double whole);
+double fc_scene_segment(FcScene* scene, double rest, double whole);
 
 // Whether g / sigma does not depend on the separation: F_n and Mindlin's stiffness fall with d alike.
 static inline bool fc_scene_ratio_is_constant(const FcScene* scene) {

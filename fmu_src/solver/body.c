@@ -8,7 +8,7 @@
 #include "model/regime.h"
 #include "model/root.h"
 #include "solver/body_march.h"
-#include "solver/pieces.h"
+#include "solver/segments.h"
 
 double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body) {
     assert(body->m > 0.0);
@@ -98,18 +98,18 @@ bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* o
                   FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && body->m > 0.0 && options->tolerance > 0.0 && !fc_is_planar(scene, from));
     fc_result_start(result, from, 0.0);
-    FcPieces pieces;
-    fc_pieces_start(&pieces, scene, h);
-    while (fc_next_piece(&pieces)) {
-        const bool is_loose = fc_scene_is_loose(pieces.scene);
-        if (is_loose) {
-            fc_loose_step(result);
+    FcSegments segments;
+    fc_segments_start(&segments, scene, h);
+    while (fc_next_segment(&segments)) {
+        const bool is_separated = fc_scene_is_separated(segments.scene);
+        if (is_separated) {
+            fc_open_contact_step(result);
         }
-        const bool is_rigid = is_loose || scene->friction->model == FC_COULOMB;
+        const bool is_rigid = is_separated || scene->friction->model == FC_COULOMB;
         const bool is_done =
-            is_rigid ? fc_body_rigid_step(pieces.scene, options, pieces.h, body, result, message)
-            : cvode  ? fc_body_cvode_step(cvode, pieces.scene, options, pieces.h, body, result, message)
-                     : fc_body_march_step(pieces.scene, options, pieces.h, body, result, message);
+            is_rigid ? fc_body_rigid_step(segments.scene, options, segments.h, body, result, message)
+            : cvode  ? fc_body_cvode_step(cvode, segments.scene, options, segments.h, body, result, message)
+                     : fc_body_march_step(segments.scene, options, segments.h, body, result, message);
         if (!is_done) {
             return false;
         }

@@ -67,11 +67,11 @@ bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* o
 bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const char* reason,
                     FcMessage* message);
 
-// Takes *result and the body over a piece of it without a bristle: Coulomb's law, or an open contact (body_rigid.c).
+// Takes *result and the body over a segment of it without a bristle: Coulomb's law, or an open contact (body_rigid.c).
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message);
 
-// The same of a piece with a bristle (cvode.c).
+// The same of a segment with a bristle (cvode.c).
 bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                         FcBody* body, FcStepResult* result, FcMessage* message);
 

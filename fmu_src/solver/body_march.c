@@ -626,7 +626,7 @@ static void begin(March* march, FcBristle bristle) {
 
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && scene->friction->model != FC_COULOMB && !fc_scene_is_loose(scene));
+    assert(h >= 0.0 && body->m > 0.0 && scene->friction->model != FC_COULOMB && !fc_scene_is_separated(scene));
     if (h == 0.0) {
         return true;
     }

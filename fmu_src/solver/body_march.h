@@ -5,7 +5,7 @@
 
 #include "solver/body_panel.h"
 
-// As fc_body_step, for a scene with a bristle, in one piece.
+// As fc_body_step, for a scene with a bristle, in one segment.
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message);
 

@@ -37,7 +37,7 @@ static const double OF_PERIOD = 0.3;
 typedef struct {
     const FcScene* scene;
     const FcBody* body; // at the start
-    bool is_loose;
+    bool is_separated;
     double allowed; // N, error of the mean force of a panel
     double t;       // s, reached
     double v;       // m/s, there
@@ -56,7 +56,7 @@ typedef struct {
 } Panel;
 
 static double limit_at(const Rigid* of, double t) {
-    return of->is_loose ? 0.0 : fc_scene_coefficients(of->scene, t).limit;
+    return of->is_separated ? 0.0 : fc_scene_coefficients(of->scene, t).limit;
 }
 
 static double holding_force(const Rigid* of, double t) {
@@ -116,7 +116,7 @@ static void make_stick(const Rigid* of, double h, Panel* panel) {
 }
 
 static void make(const Rigid* of, double h, Panel* panel) {
-    assert(h >= 0.0 && (of->side == 0) == (of->sticks || of->is_loose));
+    assert(h >= 0.0 && (of->side == 0) == (of->sticks || of->is_separated));
     (of->sticks ? make_stick : make_slip)(of, h, panel);
 }
 
@@ -167,8 +167,8 @@ static double first_fall(double* points, bool* rose) {
 // Chooses between sticking and slipping at w = 0.
 static void choose(Rigid* of) {
     const double force = holding_force(of, of->t);
-    of->sticks = !of->is_loose && fabs(force) <= limit_at(of, of->t);
-    of->side = of->sticks || of->is_loose ? 0 : force < 0.0 ? -1 : 1;
+    of->sticks = !of->is_separated && fabs(force) <= limit_at(of, of->t);
+    of->side = of->sticks || of->is_separated ? 0 : force < 0.0 ? -1 : 1;
 }
 
 // Makes the next panel, as long as it is accurate and, if it begins a slip, shows the slip rising. Returns the part of
@@ -182,7 +182,7 @@ static double take_accurate(const Rigid* of, double* length, Panel* panel, doubl
             continue;
         }
         bool rose = true;
-        const double part = of->is_loose ? 1.0 : first_fall(panel->to_end, &rose);
+        const double part = of->is_separated ? 1.0 : first_fall(panel->to_end, &rose);
         if (rose || tries >= MAX_TRIES) {
             return part;
         }
@@ -215,7 +215,7 @@ bool fc_body_rests(const FcScene* scene) {
 }
 
 double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* sticks) {
-    const Rigid of = {.scene = scene, .body = body, .is_loose = fc_scene_is_loose(scene)};
+    const Rigid of = {.scene = scene, .body = body, .is_separated = fc_scene_is_separated(scene)};
     assert(body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene));
     const double limit = limit_at(&of, 0.0);
     const double force = holding_force(&of, 0.0);
@@ -225,17 +225,17 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
 
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && (scene->friction->model == FC_COULOMB || fc_scene_is_loose(scene)));
+    assert(h >= 0.0 && body->m > 0.0 && (scene->friction->model == FC_COULOMB || fc_scene_is_separated(scene)));
     const FcScene seen = fc_body_scene(scene, body, (FcBristle){0});
     const double w = fc_drive_V(&seen.drive, 0.0);
     const double F = fc_max(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
     Rigid of = {.scene = scene,
                 .body = body,
-                .is_loose = fc_scene_is_loose(scene),
+                .is_separated = fc_scene_is_separated(scene),
                 .allowed = fc_max(SHARE * options->tolerance * options->largest,
                                    ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
                 .v = body->v};
-    of.side = of.is_loose ? 0 : w < 0.0 ? -1 : 1;
+    of.side = of.is_separated ? 0 : w < 0.0 ? -1 : 1;
     if (fc_body_rests(&seen)) {
         choose(&of);
     }
@@ -277,7 +277,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
         if (part < 1.0 && of.sticks) {
             of.sticks = false;
             of.side = holding_force(&of, of.t) < 0.0 ? -1 : 1;
-        } else if (!of.sticks && !of.is_loose && (part < 1.0 || of.side * panel.w[LAST] <= 0.0)) {
+        } else if (!of.sticks && !of.is_separated && (part < 1.0 || of.side * panel.w[LAST] <= 0.0)) {
             choose(&of);
             impulse += of.sticks ? body->m * panel.w[LAST] : 0.0; // so that w is 0 without rounding
         }

@@ -27,7 +27,7 @@
 #include "model/constants.h"
 #include "model/regime.h"
 #include "model/root.h"
-#include "solver/pieces.h"
+#include "solver/segments.h"
 
 // Each is chosen empirically: half of it costs steps, twice of it doubles the error that passes
 // (tests/solver/test_cvode.py). The part of solver.tolerance that bounds the local error of one step, so that the
@@ -360,7 +360,7 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     FcScene scene = scene_with(solver, now);
     if (has_body(solver) && fc_has_static_friction(scene.friction)) {
         // What it does then is known after the drop, since it moves w and by the force its rate.
-        const double reached = fc_size(fc_reach(&scene, fc_bristle_of(now)));
+        const double reached = fc_size(fc_project_onto_bound(&scene, fc_bristle_of(now)));
         const bool breaks_away =
             now->slips == 0 && reached < (1.0 - 2.0 * FC_ROUNDING_OF_BOUND) * fc_size(fc_bristle_of(now));
         if (breaks_away || inertia_of(solver, solver->regime, fc_bristle_of(now), &scene) <= 0.0) {
@@ -368,7 +368,7 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
             scene = scene_with(solver, now);
         }
     }
-    fc_take_onto_bound(&scene, now);
+    fc_project_result(&scene, now);
     const bool slips = now->slips != 0 && fc_push(&scene, fc_bristle_of(now)) > 0.0;
     now->slips = slips ? now->slips : 0; // at the event of a push of 0
     solver->slips = now->slips;

@@ -11,7 +11,7 @@
 
 #include "model/extremes.h"
 #include "solver/method.h"
-#include "solver/pieces.h"
+#include "solver/segments.h"
 
 // What a step takes of FC_MAX_EVALUATIONS (solver.h), at most; with a bound, at which each step makes a scene. Chosen
 // empirically, for the same time.
@@ -169,7 +169,7 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
         take_step(method, scene, result, h * ((i - 1.0) / steps), t_next, &start);
         if (bounded) { // one beyond its bound is moved onto it
             const FcScene end = fc_scene_from(scene, t_next);
-            fc_take_onto_bound(&end, result);
+            fc_project_result(&end, result);
         }
     }
     result->evaluations += method == FC_METHOD_RK4 ? 2.0 * steps : steps;

@@ -6,7 +6,7 @@
 
 #include "solver/affine_map.h"
 
-// Takes *result over [0, duration] of the scene, from a bristle within its bound (fc_reach), and adds the integrals.
+// Takes *result over [0, duration] of the scene, from a bristle within its bound (fc_project_onto_bound), and adds the integrals.
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result);
 

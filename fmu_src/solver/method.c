@@ -6,20 +6,20 @@
 #include "solver/closed_form.h"
 #include "solver/periods.h"
 
-// By cvode or a fixed step, piece by piece.
+// By cvode or a fixed step, segment by segment.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                        double h, FcStepResult* result, FcMessage* message) {
     if (method != FC_METHOD_CVODE && !fc_check_fixed_steps(scene, options->step_size, h, message)) {
         return false;
     }
-    FcPieces pieces;
-    fc_pieces_start(&pieces, scene, h);
-    while (fc_next_piece(&pieces)) {
-        if (fc_scene_is_loose(pieces.scene)) {
-            fc_loose_step(result);
+    FcSegments segments;
+    fc_segments_start(&segments, scene, h);
+    while (fc_next_segment(&segments)) {
+        if (fc_scene_is_separated(segments.scene)) {
+            fc_open_contact_step(result);
         } else if (method == FC_METHOD_CVODE
-                       ? !fc_cvode_step(cvode, pieces.scene, options, pieces.h, result, message)
-                       : !fc_fixed_step(pieces.scene, method, options, pieces.h, result, message)) {
+                       ? !fc_cvode_step(cvode, segments.scene, options, segments.h, result, message)
+                       : !fc_fixed_step(segments.scene, method, options, segments.h, result, message)) {
             return false;
         }
     }
@@ -37,7 +37,7 @@ bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, F
                        FcBristle from, FcStepResult* result) {
     assert(fc_drive_is_constant(&scene->drive));
     const int model = scene->friction->model;
-    if ((model != FC_DAHL && model != FC_LUGRE) || fc_scene_is_loose(scene) ||
+    if ((model != FC_DAHL && model != FC_LUGRE) || fc_scene_is_separated(scene) ||
         !takes_default(scene, method)) {
         return false;
     }
@@ -74,7 +74,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     *force = (FcVector){0.0, 0.0};
     *scatters = false;
     assert(!fc_drive_is_linear(&scene->drive));
-    if (fc_scene_is_loose(scene)) {
+    if (fc_scene_is_separated(scene)) {
         return (FcBristle){0};
     }
     if (!fc_drive_vibrates(&scene->drive)) {
@@ -85,5 +85,5 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     *force = fc_periods_settled(scene, options, &end, scatters);
     *evaluations = end.evaluations;
     // An error_ratio over a bound by rounding would become heat of the first step.
-    return fc_reach(scene, fc_bristle_of(&end));
+    return fc_project_onto_bound(scene, fc_bristle_of(&end));
 }

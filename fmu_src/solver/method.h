@@ -11,7 +11,7 @@
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message);
 
-// Whether steps of that size [s] are few enough for a communication step of h [s], which may be cut into pieces.
+// Whether steps of that size [s] are few enough for a communication step of h [s], which may be cut into segments.
 bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message);
 
 // SUNDIALS CVODE keeps its memory between steps, never its state. fc_cvode_new gives NULL, with *message
@@ -28,7 +28,7 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result);
 
-// The step [0, h], h [s] >= 0, from a bristle that is within its bound (fc_reach). Any method leaves Coulomb's
+// The step [0, h], h [s] >= 0, from a bristle that is within its bound (fc_project_onto_bound). Any method leaves Coulomb's
 // law to the default, and the fixed-step methods leave ElasticPlastic. cvode is the solver of FC_METHOD_CVODE,
 // unused by the others. Returns false, with *message filled, if the method refuses.
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,

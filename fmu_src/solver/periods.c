@@ -7,9 +7,9 @@
 
 #include "model/extremes.h"
 #include "model/regime.h"
-#include "solver/leap.h"
+#include "solver/multirevolution.h"
 #include "solver/march.h"
-#include "solver/pieces.h"
+#include "solver/segments.h"
 
 // The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
 // minutes.
@@ -22,8 +22,8 @@ static const double MAX_CHANGING_PERIODS = 1e6;
 static const double SAME_END = 1e-10;
 static const double MIN_PART = 1e-4;
 
-// The largest distance from the edge of the free starts that counts as 0, over the edge. Rounding: 450 eps.
-// Twice of it moves the edge by as much.
+// The largest distance from the largest_free_start of the free starts that counts as 0, over the largest_free_start. Rounding: 450 eps.
+// Twice of it moves the largest_free_start by as much.
 static const double ROUNDING_OF_EDGE = 1e-13;
 
 // The largest part of a start that a period may forget if its end determines its start: at one half the start
@@ -48,19 +48,19 @@ typedef struct {
     bool is_bounded, is_planar;
     bool has_free_map;
     FcMap free_map, free_map_across;
-    double edge[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
+    double largest_free_start[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
     FcStepResult total;
     double done; // periods
-    // After a period that met its bound: the last one that was kept.
-    FcStepResult met;
-    double met_at; // periods; negative for none
+    // After a period that anchor its bound: the last one that was kept.
+    FcStepResult anchor;
+    double anchor_period; // periods; negative for none
     FcBristle
-        least; // the one with the smallest deflection at the end of a period that met its bound since then
-} Walk;
+        least; // the one with the smallest deflection at the end of a period that anchor its bound since then
+} PeriodicSearch;
 
 static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of(result)); }
 
-static FcMap free_map_of(Walk* walk) {
+static FcMap free_map_of(PeriodicSearch* walk) {
     if (!walk->has_free_map) {
         walk->free_map =
             fc_march_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
@@ -70,35 +70,35 @@ static FcMap free_map_of(Walk* walk) {
             walk->free_map_across.offset = walk->scene->drive.V_y.value * walk->period;
         }
         walk->has_free_map = true;
-        walk->edge[0] = walk->edge[1] = INFINITY;
+        walk->largest_free_start[0] = walk->largest_free_start[1] = INFINITY;
     }
     return walk->free_map;
 }
 
 // The farthest start to that side (1 or -1) that meets no bound, from the end of the farthest start of all.
-static double edge_of(Walk* walk, int side) {
+static double edge_of(PeriodicSearch* walk, int side) {
     assert(side == 1 || side == -1);
-    double* edge = &walk->edge[side < 0];
-    if (isfinite(*edge)) {
-        return *edge;
+    double* largest_free_start = &walk->largest_free_start[side < 0];
+    if (isfinite(*largest_free_start)) {
+        return *largest_free_start;
     }
     const FcMap* map = &walk->free_map;
     FcPlane plane;
     fc_plane_make(&plane, walk->scene);
     const double farthest = side * fc_bound(&plane, 0, 0.0).D;
     FcStepResult end = {.delta = farthest, .evaluations = walk->total.evaluations};
-    // With static friction the bound that is met is the one without the drop.
+    // With static friction the bound that is anchor is the one without the drop.
     const bool drops = fc_has_static_friction(walk->scene->friction);
     fc_march_step(drops ? &plane.of_static_limit : walk->scene, walk->options, walk->period, &end);
     walk->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
     const double room = side * (end.delta - map->offset);
-    *edge = side * fc_min(side * farthest, room / kept);
-    return *edge;
+    *largest_free_start = side * fc_min(side * farthest, room / kept);
+    return *largest_free_start;
 }
 
 // Takes *total over n free periods.
-static void take_free(const Walk* walk, double n, FcStepResult* total) {
+static void take_free(const PeriodicSearch* walk, double n, FcStepResult* total) {
     const FcMap map = fc_map_power(&walk->free_map, n);
     fc_map_apply(&map, total);
     if (walk->is_planar) {
@@ -108,7 +108,7 @@ static void take_free(const Walk* walk, double n, FcStepResult* total) {
 }
 
 // Takes *total to the limit of infinitely many free periods.
-static void settle(const Walk* walk, FcStepResult* total) {
+static void settle(const PeriodicSearch* walk, FcStepResult* total) {
     const FcMap* map = &walk->free_map;
     const FcMap* across = &walk->free_map_across;
     const double least = 1e-300 * fc_max(1.0, fc_max(fabs(map->offset), fabs(across->offset)));
@@ -125,7 +125,7 @@ static const double OF_A_PERIOD = 10.0;
 static const double OF_A_POWER = 30.0;
 
 // Whether the period after n free ones meets the bound; n may be infinite.
-static bool meets_after(Walk* walk, double n) {
+static bool meets_after(PeriodicSearch* walk, double n) {
     FcStepResult end = walk->total;
     if (isinf(n)) {
         settle(walk, &end);
@@ -134,7 +134,7 @@ static bool meets_after(Walk* walk, double n) {
         walk->total.evaluations += OF_A_POWER;
     }
     const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
-    const FcBristle reached = fc_reach(walk->scene, bristle);
+    const FcBristle reached = fc_project_onto_bound(walk->scene, bristle);
     if (reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) {
         return true;
     }
@@ -147,7 +147,7 @@ static bool meets_after(Walk* walk, double n) {
 
 // free_periods by steps. The starts of free periods lie on a straight line, along which |delta| is convex at
 // each phase. So all periods up to a last one are free.
-static double free_periods_by_steps(Walk* walk, double left) {
+static double free_periods_by_steps(PeriodicSearch* walk, double left) {
     const FcMap map = free_map_of(walk);
     const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
@@ -177,12 +177,12 @@ static double free_periods_by_steps(Walk* walk, double left) {
             free = middle;
         }
     }
-    return free * moved <= rounding ? 0.0 : fc_min(free, left); // it is at the edge
+    return free * moved <= rounding ? 0.0 : fc_min(free, left); // it is at the largest_free_start
 }
 
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
 // (1 - P) in n of them, with the first shift s.
-static double free_periods(Walk* walk, double left) {
+static double free_periods(PeriodicSearch* walk, double left) {
     const FcMap map = free_map_of(walk);
     if (walk->is_planar || map.relaxation > MAX_FORGOTTEN) {
         return free_periods_by_steps(walk, left);
@@ -193,12 +193,12 @@ static double free_periods(Walk* walk, double left) {
         return left;
     }
     const int side = s > 0.0 ? 1 : -1;
-    const double edge = edge_of(walk, side);
-    const double room = side * (edge - delta) / fabs(s);
+    const double largest_free_start = edge_of(walk, side);
+    const double room = side * (largest_free_start - delta) / fabs(s);
     if (!(room * map.relaxation < 1.0)) { // never
         return left;
     }
-    if (!(side * (edge - delta) > ROUNDING_OF_EDGE * fabs(edge))) {
+    if (!(side * (largest_free_start - delta) > ROUNDING_OF_EDGE * fabs(largest_free_start))) {
         return 0.0;
     }
     const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * room) / log1p(-map.relaxation) : room;
@@ -206,25 +206,25 @@ static double free_periods(Walk* walk, double left) {
     return fc_min(left, floor(n) + 1.0);
 }
 
-static void take_cycles(Walk* walk, double times) {
-    assert(times >= 0.0 && walk->met_at >= 0.0 && walk->met_at < walk->done);
+static void take_cycles(PeriodicSearch* walk, double times) {
+    assert(times >= 0.0 && walk->anchor_period >= 0.0 && walk->anchor_period < walk->done);
     FcStepResult* total = &walk->total;
-    const FcStepResult* met = &walk->met;
-    total->impulse += times * (total->impulse - met->impulse);
-    total->impulse_y += times * (total->impulse_y - met->impulse_y);
-    total->work += times * (total->work - met->work);
-    total->heat += times * (total->heat - met->heat);
-    total->drag += times * (total->drag - met->drag);
-    walk->done += times * (walk->done - walk->met_at);
+    const FcStepResult* anchor = &walk->anchor;
+    total->impulse += times * (total->impulse - anchor->impulse);
+    total->impulse_y += times * (total->impulse_y - anchor->impulse_y);
+    total->work += times * (total->work - anchor->work);
+    total->heat += times * (total->heat - anchor->heat);
+    total->drag += times * (total->drag - anchor->drag);
+    walk->done += times * (walk->done - walk->anchor_period);
 }
 
 // Whether the bristle has returned to its state after the kept period.
-static bool repeats(Walk* walk) {
+static bool repeats(PeriodicSearch* walk) {
     const FcStepResult* total = &walk->total;
     const double size = size_of(total);
     const double changed =
-        fc_max(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
-    if (walk->met_at < 0.0 || total->slips != walk->met.slips || !(changed <= SAME_END * size)) {
+        fc_max(fabs(total->delta - walk->anchor.delta), fabs(total->delta_y - walk->anchor.delta_y));
+    if (walk->anchor_period < 0.0 || total->slips != walk->anchor.slips || !(changed <= SAME_END * size)) {
         return false;
     }
     return changed <= SAME_END * MIN_PART * size ||
@@ -253,7 +253,7 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
     }
     const double most = MAX_OF_NEWTON * size_of(total);
     const double part = length > most ? most / length : 1.0;
-    const FcBristle reached = fc_reach(scene, (FcBristle){.delta = from.x + part * start.x,
+    const FcBristle reached = fc_project_onto_bound(scene, (FcBristle){.delta = from.x + part * start.x,
                                                           .delta_y = from.y + part * start.y,
                                                           .slips = total->slips});
     total->delta = reached.delta;
@@ -262,17 +262,17 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
 }
 
 // Whether the mean since the kept period differs from *mean, which it becomes.
-static bool still_drifts(const Walk* walk, FcVector* mean) {
-    const double periods = walk->done - walk->met_at;
+static bool still_drifts(const PeriodicSearch* walk, FcVector* mean) {
+    const double periods = walk->done - walk->anchor_period;
     const FcVector before = *mean;
     *mean = (FcVector){walk->total.impulse / periods, walk->total.impulse_y / periods};
     const double allowed = walk->options->tolerance * walk->options->force * walk->period;
     return !(hypot(mean->x - before.x, mean->y - before.y) <= allowed);
 }
 
-static void walk_to_repetition(Walk* walk, double periods) {
+static void walk_to_repetition(PeriodicSearch* walk, double periods) {
     FcStepResult* total = &walk->total;
-    walk->met_at = -1.0;
+    walk->anchor_period = -1.0;
     walk->least.delta = INFINITY;
     int meetings = 0;
     // With static friction a step of Newton may lead from one cycle to another.
@@ -288,11 +288,11 @@ static void walk_to_repetition(Walk* walk, double periods) {
         walk->done += 1.0;
         const bool was_free = total->meetings == 0 && total->slips == 0;
         if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
-            walk->met_at = -1.0;
+            walk->anchor_period = -1.0;
             return;
         }
         const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
-        if (n == 0.0) { // it has met its bound, or will in the next period
+        if (n == 0.0) { // it has anchor its bound, or will in the next period
             meetings++;
             if (!was_free && (isinf(walk->least.delta) || size_of(total) < fc_size(walk->least))) {
                 walk->least = fc_bristle_of(total);
@@ -310,19 +310,19 @@ static void walk_to_repetition(Walk* walk, double periods) {
                     fc_result_start(total, fc_bristle_of(total), total->evaluations);
                     walk->done = 0.0;
                 }
-                walk->met = *total;
-                walk->met_at = walk->done;
+                walk->anchor = *total;
+                walk->anchor_period = walk->done;
                 walk->least.delta = INFINITY;
             } else if (may_step && !was_free &&
                        meetings < MAX_MEETINGS / 2 && // the mean over the last third must be one
                        take_newton_step(walk->scene, (FcVector){before.delta, before.delta_y}, total)) {
-                walk->met_at = -1.0; // periods repeat only if no step lies between them
+                walk->anchor_period = -1.0; // periods repeat only if no step lies between them
             }
             continue;
         }
         if (isinf(n)) {
             settle(walk, total);
-            walk->met_at = -1.0;
+            walk->anchor_period = -1.0;
             return;
         }
         take_free(walk, n, total);
@@ -330,8 +330,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
     }
 }
 
-static Walk walk_from(const FcScene* scene, const FcSolverOptions* options, const FcStepResult* start) {
-    return (Walk){.scene = scene,
+static PeriodicSearch walk_from(const FcScene* scene, const FcSolverOptions* options, const FcStepResult* start) {
+    return (PeriodicSearch){.scene = scene,
                   .options = options,
                   .period = 1.0 / scene->drive.vibration.f,
                   .is_bounded = fc_march_may_meet(scene),
@@ -341,7 +341,7 @@ static Walk walk_from(const FcScene* scene, const FcSolverOptions* options, cons
 
 static double step_over_equal_periods(const FcScene* scene, const FcSolverOptions* options, double periods,
                                       FcStepResult* total) {
-    Walk walk = walk_from(scene, options, total);
+    PeriodicSearch walk = walk_from(scene, options, total);
     if (!walk.is_bounded) {
         free_map_of(&walk);
         take_free(&walk, periods, &walk.total);
@@ -350,10 +350,10 @@ static double step_over_equal_periods(const FcScene* scene, const FcSolverOption
     }
     while (walk.done < periods && walk.total.evaluations <= FC_MAX_EVALUATIONS) {
         walk_to_repetition(&walk, periods);
-        const double cycle = walk.done - walk.met_at;
+        const double cycle = walk.done - walk.anchor_period;
         if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
             take_cycles(&walk, floor((periods - walk.done) / cycle));
-        } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
+        } else if (walk.done < periods && walk.anchor_period < 0.0) { // each period leads back
             free_map_of(&walk);
             take_free(&walk, periods - walk.done, &walk.total);
             walk.done = periods;
@@ -381,7 +381,7 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
     const bool has_rest = rest > 4.0 * DBL_EPSILON * h;
     assert(h >= 0.0 && rest <= h);
     FcSolverOptions until_end;
-    if (is_linear && (periods >= 2.0 || fc_scene_has_pieces(scene))) {
+    if (is_linear && (periods >= 2.0 || fc_scene_has_segments(scene))) {
         until_end = options_until_end(options, scene, h);
         options = &until_end;
     }
@@ -394,19 +394,19 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
     }
     double done = periods;
     if (periods < 2.0) {
-        fc_take_pieces(scene, options, h, result);
+        fc_march_segments(scene, options, h, result);
     } else if (is_linear) {
-        done = fc_leap(scene, options, periods, result);
+        done = fc_multirevolution(scene, options, periods, result);
         if (has_rest) {
             const FcScene later = fc_scene_later(scene, periods / f);
-            fc_take_pieces(&later, options, rest, result);
+            fc_march_segments(&later, options, rest, result);
         }
-    } else if (fc_scene_is_loose(scene)) {
-        fc_loose_step(result);
+    } else if (fc_scene_is_separated(scene)) {
+        fc_open_contact_step(result);
     } else {
         done = step_over_equal_periods(scene, options, periods, result);
         if (has_rest) {
-            fc_take_pieces(scene, options, rest, result);
+            fc_march_segments(scene, options, rest, result);
         }
     }
     if (result->evaluations > FC_MAX_EVALUATIONS) {
@@ -422,15 +422,15 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
 FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end,
                             bool* scatters) {
     const double f = scene->drive.vibration.f;
-    if (fc_scene_is_loose(scene)) {
-        fc_loose_step(end);
+    if (fc_scene_is_separated(scene)) {
+        fc_open_contact_step(end);
         return (FcVector){0.0, 0.0};
     }
-    Walk walk = walk_from(scene, options, end);
+    PeriodicSearch walk = walk_from(scene, options, end);
     if (walk.is_bounded) {
         walk_to_repetition(&walk, HUGE_VAL);
-        const double cycle = walk.done - walk.met_at;
-        if (walk.met_at >= 0.0 && cycle > 0.0) {
+        const double cycle = walk.done - walk.anchor_period;
+        if (walk.anchor_period >= 0.0 && cycle > 0.0) {
             *scatters = fc_has_static_friction(scene->friction) && !repeats(&walk);
             *end = walk.total;
             if (isfinite(walk.least.delta)) {
@@ -438,8 +438,8 @@ FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options
                 end->delta_y = walk.least.delta_y;
                 end->slips = walk.least.slips;
             }
-            return (FcVector){(walk.total.impulse - walk.met.impulse) / cycle * f,
-                              (walk.total.impulse_y - walk.met.impulse_y) / cycle * f};
+            return (FcVector){(walk.total.impulse - walk.anchor.impulse) / cycle * f,
+                              (walk.total.impulse_y - walk.anchor.impulse_y) / cycle * f};
         }
         free_map_of(&walk);
     } else {

@@ -10,13 +10,13 @@
 // start that meets no bound, whose period has the same end as the period that begins at the bound. A period
 // that meets the bound forgets its start, so periods soon repeat. With static friction break-away is a drop,
 // and a cycle of several periods may repeat: some stick, and one slips. With moving inputs the periods differ
-// (leap.h).
+// (multirevolution.h).
 #ifndef FC_SOLVER_PERIODS_H
 #define FC_SOLVER_PERIODS_H
 
 #include <stdbool.h>
 
-#include "solver/pieces.h"
+#include "solver/segments.h"
 
 // The step [0, h], h [s] >= 0, from the bristle in *result. Adds its integrals to *result. Returns false,
 // with *message filled, if the periods or the evaluations are too many.

@@ -26,7 +26,7 @@ static const double FC_MEAN_OF_DEFECT = 0.1;
 static const double FC_SHARE_OF_EVENT = 0.02;
 
 // The largest error of the interpolated maps of moving periods, over the allowed error.
-static const double FC_SHARE_OF_LEAP = 0.2;
+static const double FC_SHARE_OF_BLOCK = 0.2;
 
 // ---- lengths of panels: they decide the cost alone ----
 

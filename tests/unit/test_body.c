@@ -123,7 +123,7 @@ static void the_acceleration_is_that_of_its_force(void) {
     const FcBody body = {.m = M, .F = {80.0, 0.0}, .v = 0.03};
     FcScene seen = scene;
     seen.drive.V.value += body.v;
-    const FcBristle bristle = fc_onto_bound(&seen, (FcBristle){.delta = 2e-5, .slips = 1});
+    const FcBristle bristle = fc_scale_onto_bound(&seen, (FcBristle){.delta = 2e-5, .slips = 1});
     const FcScene moving = fc_body_scene(&scene, &body, bristle);
     const double a = moving.drive.V.rate - scene.drive.V.rate;
     const double F_t = fc_motion(&moving, FC_SLIPS_FORWARD, bristle).force.x;

@@ -1,12 +1,12 @@
-#include "solver/leap.h"
+#include "solver/multirevolution.h"
 
 #include <math.h>
 #include <stddef.h>
 
 #include "model/extremes.h"
-#include "solver/leap_block.h"
+#include "solver/period_interpolation.h"
 #include "solver/march.h"
-#include "solver/pieces.h"
+#include "solver/segments.h"
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
 // one by one.
@@ -24,7 +24,7 @@ static void take_part(const FcScene* scene, const FcSolverOptions* options, doub
     if (from > 0.0) {
         part = fc_scene_from(&part, from);
     }
-    fc_take_pieces(&part, options, to - from, total);
+    fc_march_segments(&part, options, to - from, total);
 }
 
 // The number of periods from k to the next kink: at |V| = V_1, beyond which V begins or ends to reverse; at the next end
@@ -46,7 +46,7 @@ static double to_kink(const FcScene* scene, double k) {
     return nearest;
 }
 
-double fc_leap(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total) {
+double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
     const bool is_planar = fc_is_planar(scene, fc_bristle_of(total));
     const bool is_bounded = fc_march_may_meet(scene);
@@ -86,7 +86,7 @@ double fc_leap(const FcScene* scene, const FcSolverOptions* options, double peri
             if (phase > 0.0) {
                 take_part(scene, options, k, 0.0, phase, total);
             }
-            taken = (is_one_dimensional || total->meetings == 0) && fc_block_take(&block, total);
+            taken = (is_one_dimensional || total->meetings == 0) && fc_interpolate_periods(&block, total);
             if (taken && closes) {
                 take_part(scene, options, k + block.count, phase, period, total);
             } else if (!taken) {

@@ -6,8 +6,8 @@
 //     point k = (n - 1) (1 - cos(angle)) / 2,   angle = 0, pi, pi / 2, 3 pi / 4, pi / 4, ...
 //
 // A block is smooth if the points so far predict the map at the next one.
-#ifndef FC_SOLVER_LEAP_BLOCK_H
-#define FC_SOLVER_LEAP_BLOCK_H
+#ifndef FC_SOLVER_PERIOD_INTERPOLATION_H
+#define FC_SOLVER_PERIOD_INTERPOLATION_H
 
 #include "solver/solver.h"
 
@@ -24,6 +24,6 @@ typedef struct {
 
 // Takes *total through the block. False, with *total unchanged but for its evaluations, if the block is not
 // smooth or a free bristle meets its bound.
-bool fc_block_take(const FcBlock* block, FcStepResult* total);
+bool fc_interpolate_periods(const FcBlock* block, FcStepResult* total);
 
 #endif

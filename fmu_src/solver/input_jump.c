@@ -1,4 +1,4 @@
-#include "solver/jump.h"
+#include "solver/input_jump.h"
 
 #include <assert.h>
 #include <float.h>
@@ -10,7 +10,7 @@
 #include "solver/panel_tables.h"
 
 FcPast fc_past(const FcScene* scene) {
-    if (fc_scene_is_loose(scene)) {
+    if (fc_scene_is_separated(scene)) {
         return (FcPast){.sigma = 0.0};
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
@@ -278,17 +278,17 @@ static bool is_same(const FcScene* scene, double t, const FcPast* now, const FcP
            fabs(now->limit - past->limit) <= of_d * now->limit;
 }
 
-FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from, double* heat) {
+FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from, double* heat) {
     FcBristle bristle = *from;
     const double delta = fc_size(bristle);
     *heat = 0.0;
-    if (!fc_is_bounded(scene->friction) && !fc_scene_is_loose(scene)) {
+    if (!fc_is_bounded(scene->friction) && !fc_scene_is_separated(scene)) {
         return bristle;
     }
     const FcPast now = fc_past(scene);
     const bool same = is_same(scene, t, &now, past);
     if (past->sigma == 0.0 || now.sigma == 0.0 || same) {
-        const FcBristle reached = fc_reach(scene, bristle);
+        const FcBristle reached = fc_project_onto_bound(scene, bristle);
         const double end = fc_size(reached);
         // If nothing jumps, an error_ratio is the last step's, within its tolerance. An open contact has no stiffness, or a
         // constant one.
@@ -319,5 +319,5 @@ FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, const FcBr
         bristle.delta *= ramp.delta / delta;
         bristle.delta_y *= ramp.delta / delta;
     }
-    return fc_reach(scene, bristle);
+    return fc_project_onto_bound(scene, bristle);
 }

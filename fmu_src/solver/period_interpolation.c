@@ -1,4 +1,4 @@
-#include "solver/leap_block.h"
+#include "solver/period_interpolation.h"
 
 #include <assert.h>
 #include <float.h>
@@ -10,7 +10,7 @@
 #include "model/regime.h"
 #include "model/root.h"
 #include "solver/march.h"
-#include "solver/pieces.h"
+#include "solver/segments.h"
 #include "solver/tuning.h"
 
 // FEWEST_POINTS, MAX_POINTS: the numbers of points of the interpolation. MAX_PART: the largest part of a
@@ -52,7 +52,7 @@ typedef struct {
 
 // The largest error of the block's maps, as a force [N].
 static double allowed(const Block* block) {
-    return FC_SHARE_OF_LEAP * block->of->options->tolerance * block->of->options->force;
+    return FC_SHARE_OF_BLOCK * block->of->options->tolerance * block->of->options->force;
 }
 
 static FcScene scene_at(const Block* block, double k) {
@@ -80,7 +80,7 @@ static bool lies_on_bound(const Block* block, double k, double delta) {
 static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
     FcStepResult result;
     fc_result_start(&result, start, *block->evaluations);
-    fc_take_pieces(scene, block->of->options, block->period, &result);
+    fc_march_segments(scene, block->of->options, block->period, &result);
     *block->evaluations = result.evaluations;
     return result;
 }
@@ -119,11 +119,11 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     return result.slips == start.slips && result.meetings > 0; // a free bristle forgets nothing
 }
 
-// The map of period k of the block; false if it has pieces, or does not lead from the bound to the bound as
+// The map of period k of the block; false if it has segments, or does not lead from the bound to the bound as
 // it should.
 static bool sample(const Block* block, double k, Numbers* numbers) {
     FcScene scene = scene_at(block, k);
-    if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period ||
+    if (scene.is_open || fc_scene_segment(&scene, block->period, block->period) < block->period ||
         scene.is_open) {
         return false;
     }
@@ -216,12 +216,12 @@ static Numbers map_at(const Block* block, double k) {
     return map;
 }
 
-// Subtracts from the map of period k the map that the block foretells; the effect of the rest on a force [N].
+// Subtracts from the map of period k the map that the block predicts; the effect of the rest on a force [N].
 static double less_foretold(const Block* block, double k, Numbers* map) {
     const Numbers weight = weights(block, map);
-    const Numbers foretold = map_at(block, k);
+    const Numbers predicted = map_at(block, k);
     for (int i = 0; i < block->numbers; i++) {
-        map->of[i] -= foretold.of[i];
+        map->of[i] -= predicted.of[i];
     }
     return largest_error(block->numbers, &weight, map->of);
 }
@@ -296,10 +296,10 @@ static double distance_less_way(const Block* block, double k) {
            fabs(fc_drive_displacement(drive, leaves, nears));
 }
 
-// Whether the block also foretells the period in which a slip along the other bound is most likely to begin or to
+// Whether the block also predicts the period in which a slip along the other bound is most likely to begin or to
 // cease between its points: that in which the distance less way passes 0, or else an extreme one. In ElasticPlastic, while V
 // reverses; else there is none.
-static bool foretells_slips(const Block* block) {
+static bool predicts_slips(const Block* block) {
     const FcScene first = scene_at(block, 0.0);
     if (block->of->side == 0 || first.friction->model != FC_ELASTIC_PLASTIC ||
         fabs(first.drive.V.value) >= first.drive.vibration.V_1) {
@@ -381,7 +381,7 @@ static double room_at(const Block* block, const Rooms* rooms, double k, FcBristl
 static bool meets(const Block* block, const Place* place) {
     const FcScene scene = scene_at(block, place->k);
     const FcBristle start = place->start;
-    const FcBristle reached = fc_reach(&scene, start);
+    const FcBristle reached = fc_project_onto_bound(&scene, start);
     if (reached.delta != start.delta || reached.delta_y != start.delta_y) {
         return true;
     }
@@ -434,15 +434,15 @@ static double least_room(const Stuck* of, double k) {
 
 // Whether a bristle that sticks in the block would meet its bound in it: it is followed through the tightest period and
 // those beside it. It has no room, by estimate, in these places.
-static bool meets_while_stuck(const Block* block, const Place* without_room, int places) {
+static bool meets_while_stuck(const Block* block, const Place* suspects, int places) {
     Stuck of = {.block = block, .first = scene_at(block, 0.0)};
     fc_plane_make(&of.plane, &of.first);
     of.across = fc_drive_across(&of.first.drive);
     double part = 0.0;
     double least = HUGE_VAL;
     for (int i = 0; i < places; i++) {
-        const double room = least_room(&of, without_room[i].k);
-        part = room < least ? without_room[i].k : part;
+        const double room = least_room(&of, suspects[i].k);
+        part = room < least ? suspects[i].k : part;
         least = fc_min(least, room);
     }
     const double stride = periods_of_part(block);
@@ -463,16 +463,16 @@ static bool meets_while_stuck(const Block* block, const Place* without_room, int
 }
 
 // Whether a bristle that relaxes would meet its bound in one of the places in which it has no room by estimate.
-static bool meets_in_some(const Block* block, const Place* without_room, int places) {
+static bool meets_in_some(const Block* block, const Place* suspects, int places) {
     for (int i = 0; i < places; i++) {
-        if (meets(block, &without_room[i])) {
+        if (meets(block, &suspects[i])) {
             return true;
         }
     }
     return false;
 }
 
-bool fc_block_take(const FcBlock* of, FcStepResult* total) {
+bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
     assert(of->count > 1.0 && of->phase >= 0.0 && of->first >= of->warm_up);
     Block found = {.of = of,
                    .period = 1.0 / of->scene->drive.vibration.f,
@@ -483,13 +483,13 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     if (of->side != 0 && !lies_on_bound(block, 0.0, total->delta)) {
         return false;
     }
-    if (!interpolate(block) || !foretells_slips(block)) {
+    if (!interpolate(block) || !predicts_slips(block)) {
         return false;
     }
     FcStepResult result = *total;
     const bool is_watched = of->side == 0 && of->warm_up == 0 && of->is_bounded;
     const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = of->count};
-    Place without_room[2 * MAX_PARTS + 1]; // the period with the least room of each part
+    Place suspects[2 * MAX_PARTS + 1]; // the period with the least room of each part
     int places = 0;
     Place least = {.room = HUGE_VAL};
     for (double k = 0.0; k < of->count; k += 1.0) {
@@ -499,7 +499,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
             least = at.room <= least.room ? at : least;
             if (fmod(k + 1.0, rooms.stride) == 0.0 || k == of->count - 1.0) {
                 if (least.room <= 0.0) {
-                    without_room[places++] = least;
+                    suspects[places++] = least;
                 }
                 least.room = HUGE_VAL;
             }
@@ -511,8 +511,8 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
         }
     }
     const bool sticks = of->scene->friction->model == FC_ELASTIC_PLASTIC;
-    if (places > 0 && (sticks ? meets_while_stuck(block, without_room, places)
-                              : meets_in_some(block, without_room, places))) {
+    if (places > 0 && (sticks ? meets_while_stuck(block, suspects, places)
+                              : meets_in_some(block, suspects, places))) {
         return false;
     }
     result.on_bound = false;

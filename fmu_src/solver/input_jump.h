@@ -9,10 +9,10 @@
 // ElasticPlastic that sticks breaks away on the ramp when the static bound falls to |delta|, and follows the
 // kinetic bound from there. One that slips sticks on the ramp if V has ceased to push it, the motion after the ramp
 // does not push it, and it lies inside its bound; or if it lay inside at the start and the ramp raises the bound.
-// fc_reach decides at the end. The stored energy of a contact that opens is heat if its stiffness is constant, and else
+// fc_project_onto_bound decides at the end. The stored energy of a contact that opens is heat if its stiffness is constant, and else
 // goes to the normal drive with the stiffness.
-#ifndef FC_SOLVER_JUMP_H
-#define FC_SOLVER_JUMP_H
+#ifndef FC_SOLVER_INPUT_JUMP_H
+#define FC_SOLVER_INPUT_JUMP_H
 
 #include "model/regime.h"
 
@@ -31,8 +31,8 @@ typedef struct {
 // The past that a scene leaves at its start.
 FcPast fc_past(const FcScene* scene);
 
-// The state at the start of the scene, the time t [s]: fc_reach of the bristle, unless the bound was lower on the
+// The state at the start of the scene, the time t [s]: fc_project_onto_bound of the bristle, unless the bound was lower on the
 // way. *heat [J] is the heat of the ramp. Without a past, sigma has always had its present value.
-FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from, double* heat);
+FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from, double* heat);
 
 #endif
