@@ -520,7 +520,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     state->W_f_rest = 0.0;
     state->Q_f_rest = 0.0;
     memcpy(state->rate, HELD, sizeof state->rate);
-    state->hybrid = (FcHybrid){0};
+    state->ode = (FcOdeState){0};
     FcVariables* v = &state->variables;
     v->body.v = v->body.m > 0.0 ? v->body.v_0 : 0.0;
     v->body.x = v->body.m > 0.0 ? v->body.x_0 : 0.0;

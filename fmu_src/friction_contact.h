@@ -72,7 +72,7 @@ typedef enum {
 } FcInput;
 double* fc_input_of(FcVariables* v, FcInput input);
 
-// The state of model exchange besides the variables (hybrid.h).
+// The state of model exchange besides the variables (ode.h).
 typedef struct {
     int regime;                   // FcRegime
     int changed;                  // a state was changed since the event began
@@ -84,7 +84,7 @@ typedef struct {
     double lag;       // m, of delta behind the bound along which the bristle slips; in the plane of |delta|
     double lag_force; // N, the bristle's force there
     double lag_heat;  // J, by which Q_f lags behind
-} FcHybrid;
+} FcOdeState;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
@@ -99,7 +99,7 @@ typedef struct {
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
     int slips;         // the other part of the bristle's state (FcBristle); in model exchange too
     FcPast past;       // the end of the last step, from which inputs and parameters may jump
-    FcHybrid hybrid;
+    FcOdeState ode;
 } FcFrictionState;
 
 typedef struct {

@@ -242,12 +242,12 @@ static FcDirection direction_of(const FcFrictionContact* contact, const FcVariab
 // F_t_settled and F_y_settled stay 0. So do those of outputs that do not depend on the present values.
 static FcVariables derivatives_along(FcInstance* instance, const FcVariables* along) {
     FcFrictionContact* contact = &instance->contact;
-    const bool hybrid = fc_instance_is_hybrid(instance);
+    const bool hybrid = fc_instance_is_ode(instance);
     const FcScene scene = scene_of(contact, hybrid);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
     FcDirection direction = direction_of(contact, along);
-    const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
+    const FcRegime regime = hybrid ? (FcRegime)contact->state.ode.regime : fc_regime(&scene, reached);
     const bool has_jumped = reached.delta != bristle.delta || reached.delta_y != bristle.delta_y;
     const bool is_led = has_jumped || (regime != FC_FREE && !hybrid); // by its bound, as inputs move that
     if (is_led) { // the present deflection counts by its direction alone
@@ -370,7 +370,7 @@ static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unk
         if (is_settled && (is_mean || is_force || is_state || fc_variable_is_rate(unknown))) {
             reason = "in initialization mode with initialState = Settled; afterwards it has";
         }
-    } else if (!fc_instance_is_hybrid(instance) && known->causality == FC_CAUSALITY_PARAMETER &&
+    } else if (!fc_instance_is_ode(instance) && known->causality == FC_CAUSALITY_PARAMETER &&
                (is_mean || is_state)) {
         reason = "in co-simulation, since the last step left it; F_t_settled and F_y_settled have";
     }

@@ -50,7 +50,7 @@ void fc_instance_set_start_values(FcInstance* instance) {
     }
 }
 
-bool fc_instance_is_hybrid(const FcInstance* instance) {
+bool fc_instance_is_ode(const FcInstance* instance) {
     const FcExperiment* experiment = &instance->experiment;
     return experiment->interface == FC_MODEL_EXCHANGE && experiment->mode != FC_INSTANTIATED &&
            experiment->mode != FC_INITIALIZATION_MODE;
@@ -68,7 +68,7 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
         }
         contact->state = trial.state;
         fc_friction_contact_free(&trial);
-    } else if (!(fc_instance_is_hybrid(instance) ? fc_hybrid_refresh(contact, message)
+    } else if (!(fc_instance_is_ode(instance) ? fc_ode_refresh(contact, message)
                                                  : fc_friction_contact_refresh(contact, message))) {
         return false;
     }
@@ -78,6 +78,6 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
 
 bool fc_instance_refresh_rates(FcInstance* instance, FcMessage* message) {
     return fc_instance_refresh_outputs(instance, message) &&
-           (fc_instance_is_hybrid(instance) ||
+           (fc_instance_is_ode(instance) ||
             fc_friction_contact_refresh_rates(&instance->contact, message));
 }

@@ -7,7 +7,7 @@
 #include "fmi2/call_table.h"
 #include "fmi2Functions.h"
 #include "friction_contact.h"
-#include "hybrid.h"
+#include "ode.h"
 
 // The state of a run besides the contact; plain data, part of a saved state.
 typedef struct {
@@ -40,8 +40,8 @@ FcInstance* fc_instance_enter(fmi2Component c, FcCall call);
 // As freshly instantiated: start values of modelDescription.xml, time 0, no stop time.
 void fc_instance_set_start_values(FcInstance* instance);
 
-// Model exchange, and initialized: the contact is the differential equation of hybrid.h.
-bool fc_instance_is_hybrid(const FcInstance* instance);
+// Model exchange, and initialized: the contact is the differential equation of ode.h.
+bool fc_instance_is_ode(const FcInstance* instance);
 
 // Computes F_t, sigma and A_r from the present inputs and parameters; in initialization mode all outputs,
 // from the start values set so far. Returns 1, or 0 with *message filled if these values are not a valid

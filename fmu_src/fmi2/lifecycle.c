@@ -155,12 +155,12 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     FcMessage message;
     const bool hybrid = instance->experiment.interface == FC_MODEL_EXCHANGE;
     fc_friction_contact_free(&instance->contact);
-    if ((hybrid && !fc_hybrid_allows(&instance->contact, &message)) ||
+    if ((hybrid && !fc_ode_allows(&instance->contact, &message)) ||
         !fc_friction_contact_initialize(&instance->contact, instance->experiment.start_time, &message)) {
         return fc_refuse(instance, FC_CALL_EXIT_INITIALIZATION_MODE, "%s", message.text);
     }
     if (hybrid) {
-        fc_hybrid_start(&instance->contact);
+        fc_ode_start(&instance->contact);
     }
     instance->experiment.mode = hybrid ? FC_EVENT_MODE : FC_STEP_COMPLETE;
     instance->experiment.outputs_stale = hybrid;

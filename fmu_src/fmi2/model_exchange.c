@@ -1,4 +1,4 @@
-// The functions of FMI for Model Exchange: time, states, rates, events. hybrid.h has their meaning.
+// The functions of FMI for Model Exchange: time, states, rates, events. ode.h has their meaning.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -47,7 +47,7 @@ static bool is_before_stop(const FcInstance* instance, FcCall call) {
 // farther than the length of the run.
 static bool may_look_at(const FcInstance* instance, double time) {
     const FcExperiment* experiment = &instance->experiment;
-    const double seen = instance->contact.state.hybrid.seen_time;
+    const double seen = instance->contact.state.ode.seen_time;
     const double after = after_stop(instance, time);
     const double run = experiment->stop_time - experiment->start_time;
     return !(after > 0.0) || (seen < experiment->stop_time - 1e-9 * run && after <= run);
@@ -59,7 +59,7 @@ fmi2Status fmi2EnterEventMode(fmi2Component c) {
         return fmi2Error;
     }
     if (instance->experiment.mode == FC_CONTINUOUS_TIME_MODE) {
-        fc_hybrid_event_begins(&instance->contact);
+        fc_ode_event_begins(&instance->contact);
         instance->experiment.mode = FC_EVENT_MODE;
         instance->experiment.outputs_stale = 1;
     }
@@ -77,11 +77,11 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* fmi2eventInfo) 
     FcMessage message;
     bool changed, nominals_changed;
     double next_event = 0.0;
-    if (!fc_hybrid_update(&instance->contact, &changed, &nominals_changed, &message)) {
+    if (!fc_ode_update(&instance->contact, &changed, &nominals_changed, &message)) {
         return fc_refuse(instance, FC_CALL_NEW_DISCRETE_STATES, "%s", message.text);
     }
     instance->experiment.outputs_stale = 1;
-    const bool announced = fc_hybrid_next_event(&instance->contact, &next_event);
+    const bool announced = fc_ode_next_event(&instance->contact, &next_event);
     *fmi2eventInfo = (fmi2EventInfo){
         .newDiscreteStatesNeeded = fmi2False,
         .terminateSimulation = fmi2False,
@@ -98,7 +98,7 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
     if (!instance) {
         return fmi2Error;
     }
-    fc_hybrid_event_ends(&instance->contact);
+    fc_ode_event_ends(&instance->contact);
     instance->experiment.mode = FC_CONTINUOUS_TIME_MODE;
     return fmi2OK;
 }
@@ -117,7 +117,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStat
     if (!is_before_stop(instance, call)) {
         return fmi2Error;
     }
-    *enterEventMode = fc_hybrid_step_completed(&instance->contact) ? fmi2True : fmi2False;
+    *enterEventMode = fc_ode_step_completed(&instance->contact) ? fmi2True : fmi2False;
     *terminateSimulation = fmi2False;
     return fmi2OK;
 }
@@ -134,7 +134,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
     if (!may_look_at(instance, time)) {
         return refuse_time(instance, FC_CALL_SET_TIME, time);
     }
-    fc_hybrid_set_time(&instance->contact, time);
+    fc_ode_set_time(&instance->contact, time);
     instance->experiment.outputs_stale = 1;
     return fmi2OK;
 }
@@ -193,7 +193,7 @@ fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], s
     }
     FcMessage message;
     if (!fc_instance_refresh_outputs(instance, &message) ||
-        !fc_hybrid_indicators(&instance->contact, eventIndicators, &message)) {
+        !fc_ode_indicators(&instance->contact, eventIndicators, &message)) {
         return fc_refuse(instance, call, "%s", message.text);
     }
     return fmi2OK;
@@ -223,7 +223,7 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x_nominal
         return fmi2Error;
     }
     FcMessage message;
-    if (!fc_hybrid_nominals(&instance->contact, x_nominal, &message)) {
+    if (!fc_ode_nominals(&instance->contact, x_nominal, &message)) {
         return fc_refuse(instance, call, "%s", message.text);
     }
     return fmi2OK;

@@ -60,7 +60,7 @@ static void drop_stale_outputs(const FcInstance* instance, FcSavedState* saved) 
     FcVariables* variables = &saved->friction.variables;
     const FcVector none = {0.0, 0.0};
     const bool is_initializing = saved->experiment.mode == FC_INITIALIZATION_MODE;
-    const bool has_mean = !is_initializing && !fc_instance_is_hybrid(instance);
+    const bool has_mean = !is_initializing && !fc_instance_is_ode(instance);
     const FcVector mean = {variables->F_t_mean, variables->F_y_mean};
     fc_set_outputs(variables, none, has_mean ? mean : none, &(FcContactResponse){0});
     if (is_initializing) {
@@ -88,7 +88,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
     if (!settled) {
         drop_stale_outputs(instance, saved);
     }
-    if (!settled || !fc_instance_is_hybrid(instance)) { // rates are computed when they are read
+    if (!settled || !fc_instance_is_ode(instance)) { // rates are computed when they are read
         saved->friction.variables.der = (FcStateRates){.delta = 0.0};
     }
     return fmi2OK;

@@ -37,8 +37,8 @@ static FcSavedState full_state(void) {
     }
     friction->next_rate_set = 1;
     friction->slips = -1;
-    friction->hybrid.regime = 1;
-    friction->hybrid.changed = 0;
+    friction->ode.regime = 1;
+    friction->ode.changed = 0;
     saved.experiment = (FcExperiment){.interface = FC_CO_SIMULATION,
                                       .mode = FC_STEP_COMPLETE,
                                       .tolerance_is_set = 1,

@@ -1,4 +1,4 @@
-#include "hybrid.h"
+#include "ode.h"
 
 #include <assert.h>
 #include <float.h>
@@ -35,11 +35,11 @@ static const double LONGEST_AHEAD = 1.0 / 3.0;
 // missed.
 static const double SLANT = -0.5463024898437905;
 
-// The part of a period by which a time event is later than its turn. Chosen empirically: the indicators see
+// The part of a period by which a time event is later than its turn. Chosen empirically: the indicators sample_inputs
 // the turn first, and an event at a turn does not cause a second event. Half of it does the same.
 static const double AFTER_TURN = 1e-9;
 
-bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
+bool fc_ode_allows(FcFrictionContact* contact, FcMessage* message) {
     if (contact->state.variables.friction.model == FC_COULOMB) {
         return fc_message_set(
             message, "friction.model = Coulomb (2) is not for model exchange: it has no state, and its force "
@@ -54,45 +54,45 @@ bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
             contact->state.variables.body.m);
     }
     double nominals[FC_STATE_COUNT] = {0.0};
-    return fc_hybrid_nominals(contact, nominals, message);
+    return fc_ode_nominals(contact, nominals, message);
 }
 
-void fc_hybrid_start(FcFrictionContact* contact) {
+void fc_ode_start(FcFrictionContact* contact) {
     double nominals[FC_STATE_COUNT] = {0.0};
-    FcMessage unheard;
-    if (fc_hybrid_nominals(contact, nominals, &unheard)) {
-        contact->state.hybrid.nominal_delta = nominals[0];
-        contact->state.hybrid.nominal_energy = nominals[1];
+    FcMessage ignored;
+    if (fc_ode_nominals(contact, nominals, &ignored)) {
+        contact->state.ode.nominal_delta = nominals[0];
+        contact->state.ode.nominal_energy = nominals[1];
     }
-    fc_hybrid_event_ends(contact);
+    fc_ode_event_ends(contact);
 }
 
-void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
+void fc_ode_set_time(FcFrictionContact* contact, double time) {
     contact->state.time = time;
     contact->state.time_rest = 0.0;
 }
 
-static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
+static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.ode.regime; }
 
 // The speeds of the inputs since the last step, or those in it if the time since then is too short. Returns
 // whether it is long enough.
 static bool find_speeds(FcFrictionContact* contact, double speed[FC_INPUT_COUNT]) {
-    const FcHybrid* hybrid = &contact->state.hybrid;
-    const double passed = contact->state.time - hybrid->seen_time;
+    const FcOdeState* ode = &contact->state.ode;
+    const double passed = contact->state.time - ode->seen_time;
     const bool is_long = passed > SHORTEST_LOOK * fabs(contact->state.time);
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
         const double input = *fc_input_of(&contact->state.variables, (FcInput)i);
-        const double now = is_long ? (input - hybrid->seen[i]) / passed : hybrid->speed[i];
+        const double now = is_long ? (input - ode->seen[i]) / passed : ode->speed[i];
         speed[i] = isfinite(now) ? now : 0.0;
     }
     return is_long;
 }
 
 static void see_inputs(FcFrictionContact* contact) {
-    FcHybrid* hybrid = &contact->state.hybrid;
-    hybrid->seen_time = contact->state.time;
+    FcOdeState* ode = &contact->state.ode;
+    ode->seen_time = contact->state.time;
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
-        hybrid->seen[i] = *fc_input_of(&contact->state.variables, (FcInput)i);
+        ode->seen[i] = *fc_input_of(&contact->state.variables, (FcInput)i);
     }
 }
 
@@ -102,9 +102,9 @@ typedef struct {
     FcPlane plane; // points to scene
     int slips;
     int side; // of the bound that ends its regime: 0 for either
-} View;
+} BoundView;
 
-static void look(FcFrictionContact* contact, View* view) {
+static void update_x(FcFrictionContact* contact, BoundView* view) {
     double speed[FC_INPUT_COUNT];
     find_speeds(contact, speed);
     view->scene = fc_friction_contact_scene_moving(contact, speed);
@@ -113,7 +113,7 @@ static void look(FcFrictionContact* contact, View* view) {
     view->side = view->slips != 0 ? view->slips : (int)regime_of(contact);
 }
 
-bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
+bool fc_ode_refresh(FcFrictionContact* contact, FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
@@ -129,14 +129,14 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     return true;
 }
 
-bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT],
+bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT],
                           FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
     const FcVariables* v = &contact->state.variables;
-    View now;
-    look(contact, &now);
+    BoundView now;
+    update_x(contact, &now);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     z[0] = z[1] = z[2] = z[3] = 1.0;
     if (fc_scene_depends_on_d(&now.scene)) {
@@ -162,7 +162,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATO
 }
 
 static void look_at_inputs(FcFrictionContact* contact) {
-    if (find_speeds(contact, contact->state.hybrid.speed)) {
+    if (find_speeds(contact, contact->state.ode.speed)) {
         see_inputs(contact);
     }
 }
@@ -176,12 +176,12 @@ typedef struct {
 
 // False if no bristle slips, or if the contact has opened and the stiffness is 0.
 static bool slips_along(FcFrictionContact* contact, Slip* slip) {
-    FcMessage unheard;
-    if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &unheard)) {
+    FcMessage ignored;
+    if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &ignored)) {
         return false;
     }
-    View now;
-    look(contact, &now);
+    BoundView now;
+    update_x(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
     const double D = fc_scene_is_separated(&now.scene) ? 0.0 : fc_bound(&now.plane, now.slips, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
@@ -194,37 +194,37 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
 // The rates do not contain the motion of the bound by the inputs, so delta lags behind it. Q_f lags by the
 // integral of the bristle's force over that lag, here by the trapezoidal rule from step to step.
 static void look_at_lag(FcFrictionContact* contact) {
-    FcHybrid* hybrid = &contact->state.hybrid;
+    FcOdeState* ode = &contact->state.ode;
     Slip slip;
     if (slips_along(contact, &slip)) {
         const double heat =
-            hybrid->lag_heat - 0.5 * (slip.force + hybrid->lag_force) * (slip.lag - hybrid->lag);
+            ode->lag_heat - 0.5 * (slip.force + ode->lag_force) * (slip.lag - ode->lag);
         if (isfinite(slip.lag) && isfinite(slip.force) && isfinite(heat)) {
-            hybrid->lag = slip.lag;
-            hybrid->lag_force = slip.force;
-            hybrid->lag_heat = heat;
+            ode->lag = slip.lag;
+            ode->lag_force = slip.force;
+            ode->lag_heat = heat;
         }
     }
 }
 
-bool fc_hybrid_step_completed(FcFrictionContact* contact) {
+bool fc_ode_step_completed(FcFrictionContact* contact) {
     look_at_inputs(contact);
     look_at_lag(contact);
     double z[FC_EVENT_INDICATOR_COUNT];
-    FcMessage unheard;
-    return fc_hybrid_indicators(contact, z, &unheard) && (z[1] <= 0.0 || z[2] <= 0.0 || z[3] <= 0.0);
+    FcMessage ignored;
+    return fc_ode_indicators(contact, z, &ignored) && (z[1] <= 0.0 || z[2] <= 0.0 || z[3] <= 0.0);
 }
 
 // Moves delta and adds heat [J], if both stay finite.
 static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
     FcVariables* v = &contact->state.variables;
     if (isfinite(delta.x) && isfinite(delta.y) && (delta.x != v->delta || delta.y != v->delta_y)) {
-        contact->state.hybrid.changed = 1;
+        contact->state.ode.changed = 1;
         v->delta = delta.x;
         v->delta_y = delta.y;
     }
     if (isfinite(v->Q_f + heat) && heat != 0.0) {
-        contact->state.hybrid.changed = 1;
+        contact->state.ode.changed = 1;
         v->Q_f += heat;
     }
 }
@@ -232,8 +232,8 @@ static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
 // Takes the state from the past to the present inputs, and sets the regime and the new past.
 static void begin_regime(FcFrictionContact* contact) {
     FcFrictionState* state = &contact->state;
-    View now;
-    look(contact, &now);
+    BoundView now;
+    update_x(contact, &now);
     double heat;
     const FcBristle before = fc_friction_contact_bristle(contact);
     FcBristle bristle = fc_input_jump(&now.scene, state->time, &state->past, &before, &heat);
@@ -242,7 +242,7 @@ static void begin_regime(FcFrictionContact* contact) {
     }
     move_to(contact, fc_delta(bristle), heat);
     state->slips = fc_side_of_slip(bristle);
-    state->hybrid.regime = fc_regime(&now.scene, bristle);
+    state->ode.regime = fc_regime(&now.scene, bristle);
     state->past = fc_past(&now.scene);
     Slip slip;
     if (slips_along(contact, &slip)) { // it is there, apart from rounding
@@ -263,41 +263,41 @@ static void add_drop(FcFrictionContact* contact, FcVector before) {
     }
 }
 
-void fc_hybrid_event_begins(FcFrictionContact* contact) {
+void fc_ode_event_begins(FcFrictionContact* contact) {
     look_at_inputs(contact);
     look_at_lag(contact);
-    FcHybrid* hybrid = &contact->state.hybrid;
+    FcOdeState* ode = &contact->state.ode;
     const FcVariables* v = &contact->state.variables;
     Slip slip;
     const bool slips = slips_along(contact, &slip);
-    move_to(contact, slips ? slip.delta : (FcVector){v->delta, v->delta_y}, hybrid->lag_heat);
-    hybrid->lag = hybrid->lag_heat = hybrid->lag_force = 0.0;
+    move_to(contact, slips ? slip.delta : (FcVector){v->delta, v->delta_y}, ode->lag_heat);
+    ode->lag = ode->lag_heat = ode->lag_force = 0.0;
     contact->state.past = (FcPast){.sigma = 0.0};
-    FcMessage unheard;
-    if (fc_friction_contact_check(contact, &unheard)) {
+    FcMessage ignored;
+    if (fc_friction_contact_check(contact, &ignored)) {
         const FcVector before = {v->delta, v->delta_y};
         begin_regime(contact);
         add_drop(contact, before);
     }
 }
 
-bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
+bool fc_ode_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
     double nominals[FC_STATE_COUNT] = {0.0};
-    if (!fc_hybrid_nominals(contact, nominals, message)) {
+    if (!fc_ode_nominals(contact, nominals, message)) {
         return false;
     }
-    FcHybrid* hybrid = &contact->state.hybrid;
+    FcOdeState* ode = &contact->state.ode;
     begin_regime(contact);
-    *changed = hybrid->changed;
-    *nominals_changed = nominals[0] != hybrid->nominal_delta || nominals[1] != hybrid->nominal_energy;
-    hybrid->changed = 0;
-    hybrid->nominal_delta = nominals[0];
-    hybrid->nominal_energy = nominals[1];
+    *changed = ode->changed;
+    *nominals_changed = nominals[0] != ode->nominal_delta || nominals[1] != ode->nominal_energy;
+    ode->changed = 0;
+    ode->nominal_delta = nominals[0];
+    ode->nominal_energy = nominals[1];
     return true;
 }
 
 // The time [s] from t on within which the push turns at most once.
-static double part_of_period(const View* view, double t, double period) {
+static double part_of_period(const BoundView* view, double t, double period) {
     const FcFriction* friction = view->scene.friction;
     double part = PART_OF_PERIOD * period;
     if (fc_has_static_friction(friction) && view->side != 0) {
@@ -311,7 +311,7 @@ static double part_of_period(const View* view, double t, double period) {
 }
 
 // The first local time up to `end` at which the push towards the bound of that side ends; else `end`.
-static double first_turn(const View* view, int side, double start, double period, double end) {
+static double first_turn(const BoundView* view, int side, double start, double period, double end) {
     if (!(start < end)) { // an input may be 0 at the start
         return end;
     }
@@ -332,7 +332,7 @@ static double first_turn(const View* view, int side, double start, double period
 }
 
 // Whether a bristle that sticks from now on is near the bound of that side at the time t.
-static bool turns_near(const View* view, int side, double delta, double t) {
+static bool turns_near(const BoundView* view, int side, double delta, double t) {
     return view->scene.friction->model != FC_ELASTIC_PLASTIC ||
            side * (delta + fc_drive_displacement(&view->scene.drive, 0.0, t)) >
                NEAR_THE_BOUND * fc_bound(&view->plane, view->slips, t).D;
@@ -350,7 +350,7 @@ static double before_opening(const FcDrive* drive, double longest) {
 }
 
 // The time [s] in which the vibration turns the bristle back from a bound; at most `longest`.
-static double time_to_turn(const View* view, double delta, double period, double longest) {
+static double time_to_turn(const BoundView* view, double delta, double period, double longest) {
     const double start = 1e3 * AFTER_TURN * period;
     const double end = before_opening(&view->scene.drive, longest);
     double turn = longest;
@@ -363,9 +363,9 @@ static double time_to_turn(const View* view, double delta, double period, double
     return turn;
 }
 
-bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
-    View now;
-    look(contact, &now);
+bool fc_ode_next_event(FcFrictionContact* contact, double* time) {
+    BoundView now;
+    update_x(contact, &now);
     if (!fc_drive_vibrates(&now.scene.drive)) {
         return false;
     }
@@ -380,10 +380,10 @@ bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
     return isfinite(*time) && *time > contact->state.time;
 }
 
-void fc_hybrid_event_ends(FcFrictionContact* contact) {
+void fc_ode_event_ends(FcFrictionContact* contact) {
     see_inputs(contact);
     look_at_lag(contact);
-    contact->state.hybrid.lag_heat = 0.0; // its start
+    contact->state.ode.lag_heat = 0.0; // its start
 }
 
 // The separation [m] whose force is the nominal one of an open contact until it has closed: the surfaces just
@@ -395,15 +395,15 @@ static void set_nominals(double nominals[FC_STATE_COUNT], double delta, double e
     nominals[1] = nominals[2] = energy;
 }
 
-bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COUNT], FcMessage* message) {
+bool fc_ode_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COUNT], FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const FcHybrid* hybrid = &contact->state.hybrid;
+    const FcOdeState* ode = &contact->state.ode;
     const bool open = fc_scene_is_separated(&scene);
-    if (open && hybrid->nominal_delta > 0.0) {
-        set_nominals(nominals, hybrid->nominal_delta, hybrid->nominal_energy);
+    if (open && ode->nominal_delta > 0.0) {
+        set_nominals(nominals, ode->nominal_delta, ode->nominal_energy);
         return true;
     }
     const double d = open ? touching(&scene) : scene.drive.d.value;

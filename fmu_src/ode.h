@@ -1,7 +1,7 @@
 // One contact as a differential equation with events: the physics of FMI for model exchange. The states are
 // delta, W_f, Q_f and delta_y. The inputs have their present values.
 //
-// A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event. It
+// A bounded bristle is in a regime (model/regime.h) that changes only in fc_ode_update, at an event. It
 // slips once it is beyond its bound and pushed. It is free again once the push ends. With static friction it
 // breaks away and drops to the kinetic bound. A contact opens and closes at events, too. All events have a
 // little hysteresis, so that the rounding of an event's time starts no second event. The motion between two
@@ -12,8 +12,8 @@
 // inputs now and at the end of the integrator's last step. An error of it enters the moment of sticking, and
 // delta and the force by its square. The rates of a bristle that slips do not contain the heat of that
 // motion. It is summed from step to step, and the next event adds it to Q_f.
-#ifndef FC_HYBRID_H
-#define FC_HYBRID_H
+#ifndef FC_ODE_H
+#define FC_ODE_H
 
 #include "friction_contact.h"
 
@@ -22,17 +22,17 @@ enum { FC_STATE_COUNT = 4, FC_EVENT_INDICATOR_COUNT = 4 };
 
 // False with *message filled for a law without a state, and if the nominal values are not finite numbers
 // above 0.
-bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message);
+bool fc_ode_allows(FcFrictionContact* contact, FcMessage* message);
 
 // After fc_friction_contact_initialize.
-void fc_hybrid_start(FcFrictionContact* contact);
+void fc_ode_start(FcFrictionContact* contact);
 
 // Moves the contact to the time [s] of the host's integrator.
-void fc_hybrid_set_time(FcFrictionContact* contact, double time);
+void fc_ode_set_time(FcFrictionContact* contact, double time);
 
 // Recomputes the outputs and the rates of the states. False with *message filled if the inputs are not a
 // valid combination or a result is beyond the largest number.
-bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
+bool fc_ode_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
 //   0   V with its vibration [m/s], for the kink of |V|; in the plane a slanting part of it, which is 0 at any reversal,
@@ -41,34 +41,34 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 //   2   the push of a bristle that slips, beyond its bound, with hysteresis [m/s]; 1 if it does not slip
 //   3   the distance of a closed contact from opening, or of an open one from closing: in the load [N], or in d [m]; 1 if
 //       neither has an effect
-// The first may have either sign. False as fc_hybrid_refresh.
-bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT], FcMessage* message);
+// The first may have either sign. False as fc_ode_refresh.
+bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT], FcMessage* message);
 
 // Call after each completed step of the integrator: stores the inputs. True if the regime has ended. False
 // also if the inputs are not a valid combination; the next evaluation reports this.
-bool fc_hybrid_step_completed(FcFrictionContact* contact);
+bool fc_ode_step_completed(FcFrictionContact* contact);
 
 // Begins an event, with the inputs before it. Moves a slipping bristle onto its bound, which the inputs have
 // moved, and adds the heat of that motion to Q_f. Stores the past from which inputs and parameters may jump.
-void fc_hybrid_event_begins(FcFrictionContact* contact);
+void fc_ode_event_begins(FcFrictionContact* contact);
 
 // The regime after the event. *changed says whether a state has changed since the event began,
-// *nominals_changed whether the nominal values have. False as fc_hybrid_refresh.
-bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
+// *nominals_changed whether the nominal values have. False as fc_ode_refresh.
+bool fc_ode_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
 
 // The time [s] of the next event that the indicators may miss, because a step may pass two of their zeros, or that keeps
 // an error control from passing over whole periods. Under vibration it is at most a third of a period ahead. Along a
 // line it is the time at which the vibration, with the present inputs, turns a bounded bristle back from a bound, if
 // that is sooner. A bounded bristle in the plane has a smaller part of the period. False if nothing vibrates.
-bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
+bool fc_ode_next_event(FcFrictionContact* contact, double* time);
 
 // Ends an event. A jump of the inputs in it is not a motion.
-void fc_hybrid_event_ends(FcFrictionContact* contact);
+void fc_ode_event_ends(FcFrictionContact* contact);
 
 // Nominal values at the present inputs. With the limit F of the force, that of delta is the bound or
 // saturation length F / sigma without vibration. That of the energies is F times the larger of this length
 // and the vibration's amplitude V_1 / (2 pi f). In the order delta [m], W_f [J], Q_f [J], delta_y [m]. False as
-// fc_hybrid_refresh, with the nominals unchanged.
-bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COUNT], FcMessage* message);
+// fc_ode_refresh, with the nominals unchanged.
+bool fc_ode_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COUNT], FcMessage* message);
 
 #endif
