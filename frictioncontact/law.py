@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 from frictioncontact import command as shared
-from frictioncontact.doubts import warn_of
+from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu, Value, opened

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncontact import command as shared
-from frictioncontact.doubts import warn_of
+from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError, warn
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, Value, opened

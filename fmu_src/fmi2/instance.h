@@ -26,7 +26,7 @@ typedef struct {
     FcExperiment experiment;
     fmi2CallbackFunctions callbacks; // a copy: the host may forget its own
     unsigned log_mask;               // bit i: category fc_log_categories[i] is on
-    unsigned told;                   // warnings that are given once and were (step.c, doubts.c)
+    unsigned told;                   // warnings that are given once and were (step.c, plausibility.c)
     FcVector settled_force;          // N, (F_t_settled, F_y_settled) as they were last computed
     FcVariables settled_force_of;    // of these inputs and parameters; zeros before the first time
     char name[];

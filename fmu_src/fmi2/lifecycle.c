@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fmi2/doubts.h"
+#include "fmi2/plausibility.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
@@ -164,7 +164,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     }
     instance->experiment.mode = hybrid ? FC_EVENT_MODE : FC_STEP_COMPLETE;
     instance->experiment.outputs_stale = hybrid;
-    fc_log_doubts(instance);
+    fc_log_plausibility(instance);
     fc_log(instance, FC_CALL_EXIT_INITIALIZATION_MODE, fmi2OK, FC_LOG_EVENTS, "initialized at %s",
            fc_quantity_text(instance->experiment.start_time, "s").text);
     return fmi2OK;

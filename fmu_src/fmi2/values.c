@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "fmi2/doubts.h"
+#include "fmi2/plausibility.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "settled_force.h"

@@ -13,7 +13,7 @@ import numpy as np
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
 from frictioncontact.advice.stuck_mass import INSIDE, MASTERS, Master, coupling
-from frictioncontact.doubts import WITH_STATIC_FRICTION
+from frictioncontact.plausibility import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import resources
-from ..doubts import warn_of
+from .plausibility import warn_of
 from ..errors import BatchError, UserError, shown
 from ..fmu import opened
 from ..tables import in_SI

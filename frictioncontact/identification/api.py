@@ -13,7 +13,7 @@ import numpy as np
 from rich.console import Console
 
 from frictioncontact.command import TABLE
-from frictioncontact.doubts import unused, warn_of
+from frictioncontact.plausibility import unused, warn_of
 from frictioncontact.errors import UserError, did_you_mean, quiet
 from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read

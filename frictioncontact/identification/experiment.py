@@ -19,7 +19,7 @@ import numpy as np
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.batch.many import Outputs
-from frictioncontact.doubts import WITH_STATIC_FRICTION
+from frictioncontact.plausibility import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.identification.data import Measurements, Series

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from frictioncontact.doubts import BRISTLES, WITH_STATIC_FRICTION, unused
+from frictioncontact.plausibility import BRISTLES, WITH_STATIC_FRICTION, unused
 from frictioncontact.errors import FrictionError
 from frictioncontact.identification.data import Measurements, Series
 from frictioncontact.identification.experiment import V_1, Experiment, parameter

@@ -14,7 +14,7 @@ from pathlib import Path
 from frictioncontact import resources
 from frictioncontact.batch.many import MOST_SAMPLES, processors, shown_progress
 from frictioncontact.command import add_fmu, command_line, finish
-from frictioncontact.doubts import warn_of
+from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.sweeps import workers as at

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from frictioncontact.command import as_table, progress_bar, say_written, table_console, write_csv
-from frictioncontact.doubts import FIXED_STEPS
+from frictioncontact.plausibility import FIXED_STEPS
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
 from tools.bench import figures
 from tools.bench.cases import PLAIN_PROGRAMS, SIGMAS, Case, cases, expected, plain, sampled, vibrating

@@ -1,4 +1,4 @@
-"""Writes the C tables of fmu_src/fmi2/variables.h from modelDescription.xml and frictioncontact/doubts.py.
+"""Writes the C tables of fmu_src/fmi2/variables.h from modelDescription.xml and frictioncontact/plausibility.py.
 
 usage: python -m tools.packing.variable_table modelDescription.xml variables.c
 """
@@ -14,7 +14,7 @@ from tools.packing import model_description
 
 def table(description: ModelDescription) -> str:
     lines = [
-        "// Generated from modelDescription.xml and frictioncontact/doubts.py; edit those.",
+        "// Generated from modelDescription.xml and frictioncontact/plausibility.py; edit those.",
         '#include "fmi2/variables.h"',
         '#include "friction_contact.h"',
         "",
@@ -41,12 +41,12 @@ def table(description: ModelDescription) -> str:
         f"const unsigned fc_variables_count = {len(variables)};",
         f"const unsigned fc_inputs[] = {{{', '.join(inputs)}}};",
         f"const unsigned fc_inputs_count = {len(inputs)};",
-        *_doubts(description),
+        *_plausibility(description),
     ]
     return "\n".join(lines) + "\n"
 
 
-def _doubts(description: ModelDescription) -> list[str]:
+def _plausibility(description: ModelDescription) -> list[str]:
     """Which settings are used, if one enumeration decides it, and which magnitudes are likely."""
     reference = {variable.name: k for k, variable in enumerate(description.modelVariables)}
     uses = []

@@ -19,7 +19,7 @@ from typing import Any
 
 import fmpy
 
-from frictioncontact.doubts import USED
+from frictioncontact.plausibility import USED
 from frictioncontact.errors import UserError
 from frictioncontact.files import whole_file
 from tools.description import XML, description

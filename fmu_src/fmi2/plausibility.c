@@ -1,4 +1,4 @@
-#include "fmi2/doubts.h"
+#include "fmi2/plausibility.h"
 
 #include <math.h>
 
@@ -19,7 +19,7 @@ static void warn_unused(const FcInstance* instance, const FcVariableInfo* settin
 }
 
 // The largest likely deflection [m] of a settled start. Chosen empirically, as the largest delta_0 of
-// frictioncontact/doubts.py. Half or twice of it moves the separation from which on a contact of the start
+// frictioncontact/plausibility.py. Half or twice of it moves the separation from which on a contact of the start
 // values counts as nearly open, 32 um, by 0.6 um.
 static const double LONGEST_BRISTLE = 1e-2;
 
@@ -50,7 +50,7 @@ void fc_log_scatter(FcInstance* instance, FcCall call) {
     }
 }
 
-void fc_log_doubts(FcInstance* instance) {
+void fc_log_plausibility(FcInstance* instance) {
     fc_log_scatter(instance, FC_CALL_EXIT_INITIALIZATION_MODE);
     warn_nearly_open(instance);
     for (unsigned i = 0; i < fc_uses_count; i++) {
