@@ -77,7 +77,7 @@ function(fc_add_avx core)
     target_include_directories(${core}_avx PRIVATE "${CMAKE_SOURCE_DIR}/fmu_src")
     target_compile_options(${core}_avx PRIVATE -mavx $<TARGET_PROPERTY:${core},INTERFACE_COMPILE_OPTIONS>)
     target_compile_definitions(${core}_avx PRIVATE
-        fc_nodes_make=fc_nodes_make_avx fc_free_panel=fc_free_panel_avx fc_first_upcrossing=fc_first_rise_avx
+        fc_nodes_make=fc_nodes_make_avx fc_free_panel=fc_free_panel_avx fc_first_upcrossing=fc_first_upcrossing_avx
         fc_body_panel=fc_body_panel_avx fc_body_rates=fc_body_rates_avx fc_body_panel_rates=fc_body_panel_rates_avx)
     target_link_libraries(${core}_avx PRIVATE fc_options)
     target_compile_definitions(${core} PUBLIC FC_WITH_AVX)
