@@ -186,8 +186,8 @@ static void impossible_numbers_are_refused(fmi2Component c) {
         size_t at;
         int least;
     } flags[] = {{friction + offsetof(FcFrictionState, next_rate_set), 0},
-                 {friction + offsetof(FcFrictionState, hybrid.changed), 0},
-                 {friction + offsetof(FcFrictionState, hybrid.regime), -1},
+                 {friction + offsetof(FcFrictionState, ode.changed), 0},
+                 {friction + offsetof(FcFrictionState, ode.regime), -1},
                  {friction + offsetof(FcFrictionState, slips), -1},
                  {experiment + offsetof(FcExperiment, outputs_stale), 0},
                  {experiment + offsetof(FcExperiment, tolerance_is_set), 0},
