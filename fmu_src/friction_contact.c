@@ -485,7 +485,7 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
     double force = largest;
     if (limit > 0.0) {
         force = fc_max(fc_force_beside_damping(largest, damping, limit),
-                        bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
+                       bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
     }
     return (FcSolverOptions){.tolerance = fc_max(SMALLEST_TOLERANCE, v->solver.tolerance),
                              .force = force,
@@ -505,7 +505,8 @@ static FcBristle first_bristle(FcFrictionContact* contact) {
     }
     FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     scene.drive.V.rate = 0.0; // a mass keeps its velocity
-    const FcBristle start = fc_project_onto_bound(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
+    const FcBristle start =
+        fc_project_onto_bound(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
     const FcSolverOptions options = solver_options(v, &scene, period, start);
     FcVector force;
@@ -700,7 +701,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcScene* end = ends_elsewhere ? &moved : &scene;
     FcVector force;
     const bool slips = result.on_bound && !fc_scene_is_separated(end);
-    const FcBristle reached = slips ? fc_scale_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
+    const FcBristle reached =
+        slips ? fc_scale_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
     if (!find_force(end, &response, &body, reached, &force, message)) {
         return false;
     }

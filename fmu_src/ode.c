@@ -129,8 +129,7 @@ bool fc_ode_refresh(FcFrictionContact* contact, FcMessage* message) {
     return true;
 }
 
-bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT],
-                          FcMessage* message) {
+bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT], FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
@@ -197,8 +196,7 @@ static void look_at_lag(FcFrictionContact* contact) {
     FcOdeState* ode = &contact->state.ode;
     Slip slip;
     if (slips_along(contact, &slip)) {
-        const double heat =
-            ode->lag_heat - 0.5 * (slip.force + ode->lag_force) * (slip.lag - ode->lag);
+        const double heat = ode->lag_heat - 0.5 * (slip.force + ode->lag_force) * (slip.lag - ode->lag);
         if (isfinite(slip.lag) && isfinite(slip.force) && isfinite(heat)) {
             ode->lag = slip.lag;
             ode->lag_force = slip.force;

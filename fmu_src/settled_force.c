@@ -52,7 +52,8 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
     }
     const FcVariables* v = &held->state.variables;
     const FcScene scene = fc_friction_contact_scene(held);
-    const FcBristle start = fc_project_onto_bound(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
+    const FcBristle start =
+        fc_project_onto_bound(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
         .tolerance = tolerance, .force = fc_max(scale, DBL_MIN), .step_size = v->solver.stepSize};
@@ -97,7 +98,7 @@ static double first_range_of_V(const FcVariables* v, const FcScene* scene, doubl
         const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
         const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
         scale = fc_max(speed, fc_drive_vibrates(&scene->drive) ? fc_min(reach, LARGEST_SCALE_OF_V)
-                                                                : v->friction.V_S);
+                                                               : v->friction.V_S);
     }
     const double room = speed >= amplitude ? speed - amplitude : speed; // towards 0
     return copysign(PART_OF_SCALE * scale, room > PART_OF_SCALE * scale ? -V : V);

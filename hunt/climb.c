@@ -12,7 +12,7 @@ static const double LONG = 4.0; // periods, whose number is the reference's time
 static const double DRAWN = 1.0 / 3.0;           // of a climb: the rest changes what was drawn
 static const double JUMPS = 0.2;                 // the chance of a second step
 static const double SHARES[] = {0.5, 0.1, 0.02}; // by which numbers change,
-enum { MAX_WORDS = 3 };                         // so many at once
+enum { MAX_WORDS = 3 };                          // so many at once
 static const double TAKES_OVER = 0.15;           // the chance that a word comes from another sequence
 
 // The begin of a word, none of which is more likely than another.

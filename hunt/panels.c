@@ -41,8 +41,8 @@ static void print_panel(const FcIntegrator* integrator, From from, const FcPanel
     const double made = (integrator->evaluations - evaluations) / FC_STAGES;
     evaluations = integrator->evaluations;
     if (lists) {
-        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %4.0f %s\n", from.t, integrator->at.t, from.u,
-               integrator->at.u, integrator->part.in.length, panel->z, panel->end_error / allowed,
+        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %4.0f %s\n", from.t, integrator->at.t,
+               from.u, integrator->at.u, integrator->part.in.length, panel->z, panel->end_error / allowed,
                panel->mean_error / allowed, made, from.kind);
     }
 }
@@ -56,14 +56,14 @@ static void print_panel(const FcIntegrator* integrator, From from, const FcPanel
 
 WRAP(void, fc_accept_panel, FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel, double h) {
     const From from = from_of(integrator, KINDS[fc_kind(integrator)]);
-    __real_fc_append_panel(integrator, nodes, panel, h);
+    __real_fc_accept_panel(integrator, nodes, panel, h);
     print_panel(integrator, from, panel);
 }
 
 WRAP(void, fc_accept_closed_form, FcIntegrator* integrator, const FcMap* map, double t) {
     const From from = from_of(integrator, "known");
     const FcPanel none = {.z = NAN, .end_error = NAN, .mean_error = NAN};
-    __real_fc_append_known(integrator, map, t);
+    __real_fc_accept_closed_form(integrator, map, t);
     print_panel(integrator, from, &none);
 }
 

@@ -11,8 +11,8 @@ static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the seq
 static const double MAX_KAPPA = 1e8;
 static const double MAX_PLANAR = 30.0;   // periods of a step,
 static const double MAX_LEAP = 400.0;    // and of a leap: of one whose inputs move
-static const double SHORTEST = 1e-9;      // s, of a step
-static const double NEARLY_NONE = 1e-9;   // m/s, across
+static const double SHORTEST = 1e-9;     // s, of a step
+static const double NEARLY_NONE = 1e-9;  // m/s, across
 static const double MAX_PERIODS = 1e6;   // of a step
 static const double MAX_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
@@ -184,7 +184,7 @@ static ReferenceScene contact_drawn(bool plane) {
 // ---- A mass ----
 
 static const double STIFFNESSES[] = {6e4, 6e12}, MASSES[] = {1e-3, 1e3}; // N/m; kg
-static const double MAX_RINGING = 60.0, LONGEST_OF_MASS = 1e-2;         // rad, of a stuck mass in a step; s
+static const double MAX_RINGING = 60.0, LONGEST_OF_MASS = 1e-2;          // rad, of a stuck mass in a step; s
 enum { STEPS_OF_MASS = 3 };
 
 static double force_on_mass(const ReferenceScene* s) { // a normal distribution, nearly

@@ -69,7 +69,7 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
         contact->state = trial.state;
         fc_friction_contact_free(&trial);
     } else if (!(fc_instance_is_ode(instance) ? fc_ode_refresh(contact, message)
-                                                 : fc_friction_contact_refresh(contact, message))) {
+                                              : fc_friction_contact_refresh(contact, message))) {
         return false;
     }
     instance->experiment.outputs_stale = 0;
@@ -78,6 +78,5 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
 
 bool fc_instance_refresh_rates(FcInstance* instance, FcMessage* message) {
     return fc_instance_refresh_outputs(instance, message) &&
-           (fc_instance_is_ode(instance) ||
-            fc_friction_contact_refresh_rates(&instance->contact, message));
+           (fc_instance_is_ode(instance) || fc_friction_contact_refresh_rates(&instance->contact, message));
 }

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fmi2/plausibility.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
+#include "fmi2/plausibility.h"
 #include "fmi2/variables.h"
 #include "model/extremes.h"
 

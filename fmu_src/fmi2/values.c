@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "fmi2/plausibility.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
+#include "fmi2/plausibility.h"
 #include "settled_force.h"
 
 static const char* const TYPE_NAME[] = {

@@ -6,9 +6,9 @@
 
 #include "model/regime.h"
 #include "solver/body_stuck.h"
+#include "solver/dense_output.h"
 #include "solver/march.h"
 #include "solver/panel_error.h"
-#include "solver/dense_output.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
@@ -228,7 +228,7 @@ static double error_ratio_of(const March* march, const FcNodes* nodes, const FcB
                           (2.0 * friction->sigma_1 + friction->sigma_2) * w;
     const double rounded = ROUNDING * fc_max(nodes->tau[START], nodes->tau[LAST]);       // s
     const double e_v = fc_max(0.0, m * fc_radau_unresolved(of_v, z) - rounded * forces); // N s
-    double of_end = 0.0;                                                                  // N
+    double of_end = 0.0;                                                                 // N
     double life = H;
     if (kind != FC_SLIPS) {
         const double r = panel->rate[LAST].relaxation;
@@ -278,25 +278,24 @@ static double planned(const March* march) {
     h = fc_min(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
     const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
     h = jerk > 0.0 ? fc_min(h, cbrt(6.0 * way / jerk)) : h;
-    return march->is_known  ? fc_min(h, MAX_PHASE / ringing)
-           : march->h > 0.0 ? h
-                            : fc_min(h, 1.0 / ringing);
+    return march->is_known ? fc_min(h, MAX_PHASE / ringing) : march->h > 0.0 ? h : fc_min(h, 1.0 / ringing);
 }
 
 // Makes the next panel, as long as it is accurate; *h becomes its length in u. False if it cannot be solved.
 static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel) {
     const FcTimeMap* in = &march->part.in;
     *h = fc_time_map_u(in, fc_min(march->part.end, march->t + planned(march))) - u;
-    *h = *h > 0.0
-             ? *h
-             : fc_time_map_u(in, march->part.end) - u; // what is planned is less than t is rounded by
+    *h = *h > 0.0 ? *h
+                  : fc_time_map_u(in, march->part.end) - u; // what is planned is less than t is rounded by
     if (isfinite(in->length)) {
         *h = fc_min(*h, MAX_U);
     }
     assert(*h > 0.0);
     for (int tries = 0;; tries++) {
         const bool is_solved = make(march, u, *h, nodes, panel);
-        const double error_ratio = march->is_known ? 0.0 : is_solved ? error_ratio_of(march, nodes, panel) : HUGE_VAL;
+        const double error_ratio = march->is_known ? 0.0
+                                   : is_solved     ? error_ratio_of(march, nodes, panel)
+                                                   : HUGE_VAL;
         if (error_ratio <= 1.0 || tries >= MAX_TRIES) {
             const double grows =
                 tries > 0 ? 1.0 : fc_min(4.0, 0.9 * pow(fc_max(error_ratio, 1e-30), -1.0 / 16.0));
@@ -626,7 +625,8 @@ static void begin(March* march, FcBristle bristle) {
 
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && scene->friction->model != FC_COULOMB && !fc_scene_is_separated(scene));
+    assert(h >= 0.0 && body->m > 0.0 && scene->friction->model != FC_COULOMB &&
+           !fc_scene_is_separated(scene));
     if (h == 0.0) {
         return true;
     }

@@ -225,7 +225,8 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
 
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && (scene->friction->model == FC_COULOMB || fc_scene_is_separated(scene)));
+    assert(h >= 0.0 && body->m > 0.0 &&
+           (scene->friction->model == FC_COULOMB || fc_scene_is_separated(scene)));
     const FcScene seen = fc_body_scene(scene, body, (FcBristle){0});
     const double w = fc_drive_V(&seen.drive, 0.0);
     const double F = fc_max(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
@@ -233,7 +234,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
                 .body = body,
                 .is_separated = fc_scene_is_separated(scene),
                 .allowed = fc_max(SHARE * options->tolerance * options->largest,
-                                   ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
+                                  ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
                 .v = body->v};
     of.side = of.is_separated ? 0 : w < 0.0 ? -1 : 1;
     if (fc_body_rests(&seen)) {

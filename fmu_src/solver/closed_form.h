@@ -1,15 +1,11 @@
-// Steps and settled states without vibration, with the inputs held: closed forms.
+// Motions along a line that are closed forms, from one event of V to the next: Coulomb's law with a constant limit, and
+// ElasticPlastic with a constant limit, while the bristle surely slips or, with a constant stiffness, sticks.
 #ifndef FC_SOLVER_CLOSED_FORM_H
 #define FC_SOLVER_CLOSED_FORM_H
 
-#include "model/plane.h"
-#include "solver/solver.h"
+#include "solver/integrator.h"
 
-// A step of h [s] >= 0 of Dahl's or LuGre's law without a bound: from that start: exact. contact is the scene's at its start.
-void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
-                      FcStepResult* result);
-
-// The limit of a bristle within its bound in steady sliding, and its force [N]; the bristle itself if nothing moves.
-FcBristle fc_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force);
+// Takes the present motion to its end or to that of the part; false if it has no closed form.
+bool fc_take_closed_form(FcIntegrator* integrator);
 
 #endif

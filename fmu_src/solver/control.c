@@ -145,7 +145,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcP
     double longest = control->longest;
     if (kind == FC_STICKS && at->per_path > 0.0) {
         span = fc_min(span, fc_time_to_move(at->rate / at->per_path, part->speed_bound.of[1],
-                                              FC_MAX_RADII / at->per_path));
+                                            FC_MAX_RADII / at->per_path));
     } else if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
         // A settled force is constant but for its lag, and the integrals of the constant are exact.
         const double lag = lag_for(control, in, x < 0.0 ? 0.0 : at->rate);
@@ -160,14 +160,14 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcP
         const double straight = z / at->rate;
         const double grows = isinf(in->length) ? 0.0 : 2.0 * straight / sqrt(in->length * in->length + x * x);
         h = fc_min(h, isinf(in->length) ? straight
-                        : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
-                                          : 0.5 * rough_log(1.0 + grows));
+                      : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
+                                        : 0.5 * rough_log(1.0 + grows));
     }
     return h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
 }
 
 double fc_control_error_ratio(const FcControl* control, const FcPart* part, const FcNodes* nodes,
-                         const FcPanel* panel, double* of_end) {
+                              const FcPanel* panel, double* of_end) {
     const FcInterval* interval = control->interval;
     const double end = nodes->t[FC_STAGES - 1];
     const double allowed = fc_allowed_force(interval);
@@ -183,8 +183,7 @@ double fc_control_error_ratio(const FcControl* control, const FcPart* part, cons
     // Heat is the force times the way and the change of the deflection: in a curve, whose coefficients fall late, a short panel
     // of a relaxing bristle may err by a part of its change alone.
     const FcFriction* friction = interval->scene->friction;
-    const double V =
-        fc_min(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
+    const double V = fc_min(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
     const bool in_curve =
         friction->model == FC_LUGRE && (friction->staticRatio - 1.0) * exp(-V * V) > interval->tolerance;
     const double path = interval->speed * interval->duration / interval->saturation;

@@ -2,9 +2,9 @@
 #ifndef FC_SOLVER_CONTROL_H
 #define FC_SOLVER_CONTROL_H
 
-#include "solver/time_map.h"
 #include "solver/interval.h"
 #include "solver/panel.h"
+#include "solver/time_map.h"
 
 // The motion of a panel; Coulomb's law has no bristle.
 typedef enum { FC_RELAXES, FC_STICKS, FC_SLIPS, FC_NO_BRISTLE } FcKind;
@@ -39,7 +39,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcP
 // The factor by which the panel's errors of the mean are too large, and in *of_end that at the end, before it fades along the
 // path to the interval's end.
 double fc_control_error_ratio(const FcControl* control, const FcPart* part, const FcNodes* nodes,
-                         const FcPanel* panel, double* of_end);
+                              const FcPanel* panel, double* of_end);
 
 // The factor by which a panel is shortened that was refused, and that by which the one after it may be longer if there
 // were refusals, for an error_ratio.

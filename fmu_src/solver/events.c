@@ -43,7 +43,7 @@ bool fc_is_unloading(const FcIntegrator* integrator, FcVector n) {
     }
     const FcVelocity now = fc_drive_velocity(&interval->scene->drive, t);
     const double time = fc_min(fc_smooth_time(&interval->pace),
-                                 fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
+                               fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
     return fc_push_at(&pushed, t + 1e-6 * fc_min(time, interval->duration - t)) < 0.0;
 }
 
@@ -75,7 +75,8 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
     // In the plane its direction relaxes.
     const double turning = at.sigma * D * fabs(fc_across(n, at.V));
     if (turning > 0.0) {
-        integrator->control.log_transient = log(turning / (at.speed * fc_allowed_force(integrator->interval)));
+        integrator->control.log_transient =
+            log(turning / (at.speed * fc_allowed_force(integrator->interval)));
     }
     return true;
 }
@@ -103,7 +104,8 @@ static double close_to_bound(const FcIntegrator* integrator, double D) {
     double distance = 1e-13 * D;
     if (fc_kind(integrator) == FC_STICKS) {
         const double of_time =
-            fabs(integrator->at.u) * fc_time_map_dt_du(&integrator->part.in, integrator->at.u) + interval->duration;
+            fabs(integrator->at.u) * fc_time_map_dt_du(&integrator->part.in, integrator->at.u) +
+            interval->duration;
         distance += 4e-16 * fc_largest_push(integrator) * of_time;
     } else { // an error_ratio over the bound costs heat, whose tolerance goes with the path
         const double allowed =
@@ -141,7 +143,8 @@ static double top_at_bound(const FcIntegrator* integrator, const FcNodes* nodes,
         const FcVector n = {panel->delta[i].x / held.D, panel->delta[i].y / held.D};
         recedes[i] = -fc_plane_push(integrator->plane, &at, &held, n);
     }
-    const double top = FC_FASTEST(fc_first_upcrossing)(recedes, ROUNDING_OF_PUSH * fc_largest_push(integrator));
+    const double top =
+        FC_FASTEST(fc_first_upcrossing)(recedes, ROUNDING_OF_PUSH * fc_largest_push(integrator));
     return top > BESIDE_TOP && top < 1.0 - BESIDE_TOP ? top : 2.0;
 }
 
@@ -205,7 +208,8 @@ static bool catches_up(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel,
         double push[POINTS];
         for (int i = 0; i < POINTS; i++) {
             const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
-            const FcPlaneBound bound = fc_plane_bound(integrator->plane, &at, 1, nodes->t[i], nodes->phase[i]);
+            const FcPlaneBound bound =
+                fc_plane_bound(integrator->plane, &at, 1, nodes->t[i], nodes->phase[i]);
             push[i] = fc_plane_push(integrator->plane, &at, &bound, direction(panel->delta[i]));
         }
         const double ends = end_of_push(integrator, push);
@@ -223,7 +227,8 @@ static bool catches_up(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel,
 // - The panel is made again up to the event, which its own points then show more accurately.
 // - A panel that dips inside the bound between its points is shortened.
 // - An exact meeting is the first one, unless there is a top before it.
-static bool cut_at_meeting(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel, double* h, double* over) {
+static bool cut_at_meeting(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel, double* h,
+                           double* over) {
     bool is_cut = false;
     bool is_exact = false;
     for (int cuts = 0; cuts < MAX_CUTS; cuts++) {

@@ -134,8 +134,7 @@ static double steps_in(double h, double size) { return fc_max(1.0, ceil(h / size
 
 bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message) {
     const double steps = steps_in(h, size);
-    const double most =
-        FC_MAX_EVALUATIONS / (fc_is_bounded(scene->friction) ? OF_A_BOUNDED_STEP : OF_A_STEP);
+    const double most = FC_MAX_EVALUATIONS / (fc_is_bounded(scene->friction) ? OF_A_BOUNDED_STEP : OF_A_STEP);
     return steps <= most ||
            fc_message_set(
                message,

@@ -152,8 +152,8 @@ FC_INLINE void exact_integrals(const FcNodes* nodes, double held, double limit, 
     map->heat_offset += held * held / limit * nodes->side * rest;
 }
 
-FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, bool planar, bool for_any,
-                    FcPanel* panel) {
+FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, bool planar,
+                    bool for_any, FcPanel* panel) {
     const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
     const double over_duration = 1.0 / nodes->duration;
     double FC_PAIRED z[POINTS];

@@ -278,7 +278,8 @@ static bool is_same(const FcScene* scene, double t, const FcPast* now, const FcP
            fabs(now->limit - past->limit) <= of_d * now->limit;
 }
 
-FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from, double* heat) {
+FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from,
+                        double* heat) {
     FcBristle bristle = *from;
     const double delta = fc_size(bristle);
     *heat = 0.0;

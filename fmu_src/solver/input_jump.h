@@ -33,6 +33,7 @@ FcPast fc_past(const FcScene* scene);
 
 // The state at the start of the scene, the time t [s]: fc_project_onto_bound of the bristle, unless the bound was lower on the
 // way. *heat [J] is the heat of the ramp. Without a past, sigma has always had its present value.
-FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from, double* heat);
+FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from,
+                        double* heat);
 
 #endif

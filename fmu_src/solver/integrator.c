@@ -19,8 +19,8 @@ FcKind fc_kind(const FcIntegrator* integrator) {
     const int model = integrator->interval->scene->friction->model;
     return model == FC_COULOMB || integrator->is_rigid ? FC_NO_BRISTLE
            : integrator->is_slipping                   ? FC_SLIPS
-           : model == FC_ELASTIC_PLASTIC             ? FC_STICKS
-                                                     : FC_RELAXES;
+           : model == FC_ELASTIC_PLASTIC               ? FC_STICKS
+                                                       : FC_RELAXES;
 }
 
 FcVector fc_integrator_delta(const FcIntegrator* integrator) {
@@ -34,7 +34,8 @@ void fc_set_delta(FcIntegrator* integrator, FcVector delta) {
 }
 
 FcPlaneCoefficients fc_coefficients_at(const FcIntegrator* integrator, double t) {
-    return fc_plane_coefficients(integrator->plane, t, fc_drive_phase(&integrator->interval->scene->drive, t));
+    return fc_plane_coefficients(integrator->plane, t,
+                                 fc_drive_phase(&integrator->interval->scene->drive, t));
 }
 
 double fc_largest_push(const FcIntegrator* integrator) {
@@ -49,8 +50,10 @@ static FcPanelStart first_from(const FcIntegrator* integrator) {
     const bool has_constant_coefficients = limit_stands && fc_scene_stiffness_is_constant(scene);
     const bool has_curve = fc_has_stribeck_curve(scene->friction);
     return (FcPanelStart){.push = fc_largest_push(integrator) + DBL_MIN,
-                    .has_constant_coefficients = has_constant_coefficients && !has_curve && scene->friction->sigma_1 == 0.0,
-                    .limit_stands = limit_stands && (!has_curve || fc_drive_V_is_constant(&scene->drive))};
+                          .has_constant_coefficients =
+                              has_constant_coefficients && !has_curve && scene->friction->sigma_1 == 0.0,
+                          .limit_stands =
+                              limit_stands && (!has_curve || fc_drive_V_is_constant(&scene->drive))};
 }
 
 static void reach(FcIntegrator* integrator, double u, double t, const FcPlaneCoefficients* at) {
@@ -58,15 +61,15 @@ static void reach(FcIntegrator* integrator, double u, double t, const FcPlaneCoe
     integrator->at = (FcPosition){.u = u, .t = t, .rate = per_path * fabs(at->speed), .per_path = per_path};
 }
 
-void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const FcPlane* plane, const FcInterval* interval,
-                       bool in_one_part, double evaluations) {
+void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const FcPlane* plane,
+                         const FcInterval* interval, bool in_one_part, double evaluations) {
     *integrator = (FcIntegrator){.plane = plane,
-                             .interval = interval,
-                             .parts = workspace->parts,
-                             .remaining_path = workspace->remaining_path,
-                             .is_bounded = fc_is_bounded(interval->scene->friction),
-                             .by_start = {{1.0, 0.0}, {0.0, 1.0}},
-                             .evaluations = evaluations};
+                                 .interval = interval,
+                                 .parts = workspace->parts,
+                                 .remaining_path = workspace->remaining_path,
+                                 .is_bounded = fc_is_bounded(interval->scene->friction),
+                                 .by_start = {{1.0, 0.0}, {0.0, 1.0}},
+                                 .evaluations = evaluations};
     if (!plane->is_one_dimensional) {
         integrator->evaluations += OF_MINIMA;
         integrator->across = fc_drive_across(&interval->scene->drive);
@@ -75,7 +78,8 @@ void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const
     if (in_one_part) {
         workspace->parts[0] = (FcPart){.end = interval->duration, .in = {0.0, INFINITY}, .strip_ratio = 1.0};
     }
-    integrator->count = in_one_part ? 1 : fc_parts(plane, interval->duration, interval->tolerance, workspace->parts);
+    integrator->count =
+        in_one_part ? 1 : fc_parts(plane, interval->duration, interval->tolerance, workspace->parts);
     integrator->first = fc_coefficients_at(integrator, 0.0);
     reach(integrator, 0.0, 0.0, &integrator->first);
 }
@@ -146,8 +150,9 @@ bool fc_make_panel(FcIntegrator* integrator, double h, FcNodes* nodes, FcPanel* 
     from->scale = from->for_any ? (1.0 - integrator->along.relaxation) * integrator->scale : 0.0;
     const FcPlane* plane = integrator->plane;
     FC_FASTEST(fc_nodes_make)(plane, &integrator->part, integrator->at.u, h, nodes);
-    integrator->evaluations += FC_STAGES * (plane->scene->drive.E.rate != 0.0 ? OF_A_MODULUS : 1.0) *
-                             (fc_kind(integrator) == FC_SLIPS && !plane->is_one_dimensional ? OF_NEWTON : 1.0);
+    integrator->evaluations +=
+        FC_STAGES * (plane->scene->drive.E.rate != 0.0 ? OF_A_MODULUS : 1.0) *
+        (fc_kind(integrator) == FC_SLIPS && !plane->is_one_dimensional ? OF_NEWTON : 1.0);
     switch (fc_kind(integrator)) {
     case FC_SLIPS:
         return fc_slip_panel(plane, nodes, from, panel);
@@ -168,13 +173,15 @@ void fc_resolve_shorter(FcIntegrator* integrator, double h, FcNodes* nodes, FcPa
 
 double fc_path_left(FcIntegrator* integrator, double t) {
     find_ways(integrator);
-    return integrator->remaining_path[integrator->number] + least_path(integrator, &integrator->part, t, integrator->part.end);
+    return integrator->remaining_path[integrator->number] +
+           least_path(integrator, &integrator->part, t, integrator->part.end);
 }
 
 // The factor by which the errors of a panel that was solved are too large.
 static double error_ratio_of(FcIntegrator* integrator, const FcNodes* nodes, const FcPanel* panel) {
     double of_end;
-    const double of_mean = fc_control_error_ratio(&integrator->control, &integrator->part, nodes, panel, &of_end);
+    const double of_mean =
+        fc_control_error_ratio(&integrator->control, &integrator->part, nodes, panel, &of_end);
     if (of_end > 1.0 && of_end > of_mean) { // the path is found only if it decides
         of_end *= exp(-fc_path_left(integrator, nodes->t[LAST]) / integrator->interval->saturation);
     }
@@ -183,8 +190,8 @@ static double error_ratio_of(FcIntegrator* integrator, const FcNodes* nodes, con
 
 double fc_step_adaptive(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel) {
     const FcKind kind = fc_kind(integrator);
-    double h = fc_control_length(&integrator->control, &integrator->part, &integrator->at, kind, integrator->end,
-                                 integrator->h);
+    double h = fc_control_length(&integrator->control, &integrator->part, &integrator->at, kind,
+                                 integrator->end, integrator->h);
     for (int tries = 0;; tries++) {
         const bool is_solved = fc_make_panel(integrator, h, nodes, panel);
         const double error_ratio = is_solved ? error_ratio_of(integrator, nodes, panel) : HUGE_VAL;
@@ -203,7 +210,8 @@ double fc_step_adaptive(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel
 void fc_accept_panel(FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel, double h) {
     if (fc_kind(integrator) ==
         FC_STICKS) { // it moves with the surfaces: a drift over many periods is exact to rounding
-        const FcVector from = integrator->from.for_any ? (FcVector){0.0, 0.0} : fc_integrator_delta(integrator);
+        const FcVector from =
+            integrator->from.for_any ? (FcVector){0.0, 0.0} : fc_integrator_delta(integrator);
         panel->along.offset = from.x + nodes->moved[LAST];
         panel->across.offset = from.y + nodes->moved_y[LAST];
     }

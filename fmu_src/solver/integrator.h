@@ -15,16 +15,16 @@ typedef struct {
     int count, number;
     FcPart part; // the present one, in the variable of the present motion
     FcPosition at;
-    double end, length_u; // of the part, in u
-    double h;          // of the next panel, in u; 0 if nothing proposes one
-    double* remaining_path;       // m, the path after each part, at the least; found if it is needed
+    double end, length_u;   // of the part, in u
+    double h;               // of the next panel, in u; 0 if nothing proposes one
+    double* remaining_path; // m, the path after each part, at the least; found if it is needed
     // The bristle, and the sums.
     FcMap along, across_map;
-    FcPanelStart from;      // of the next panel, and whether the maps are for any start
-    double scale;     // m, of all these starts
-    int slips;        // FcBristle
-    bool is_slipping; // along its bound
-    bool touches;     // a free bristle is at its bound
+    FcPanelStart from; // of the next panel, and whether the maps are for any start
+    double scale;      // m, of all these starts
+    int slips;         // FcBristle
+    bool is_slipping;  // along its bound
+    bool touches;      // a free bristle is at its bound
     bool is_bounded;
     bool is_stalled; // at an event that rounding hides: a little push counts as none, and then it slips
     bool is_rigid;   // rounding cannot see the bristle's length beside the path: its force is Coulomb's
@@ -45,8 +45,8 @@ typedef struct {
 } FcWorkspace;
 
 // A integrator of the interval from its start on, with its parts, or in one part; the bristle is to be set.
-void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const FcPlane* plane, const FcInterval* interval,
-                       bool in_one_part, double evaluations);
+void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const FcPlane* plane,
+                         const FcInterval* interval, bool in_one_part, double evaluations);
 
 FcKind fc_kind(const FcIntegrator* integrator);
 FcVector fc_integrator_delta(const FcIntegrator* integrator); // m, now

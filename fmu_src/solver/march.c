@@ -7,9 +7,9 @@
 
 #include "model/extremes.h"
 #include "model/regime.h"
-#include "solver/integrator.h"
+#include "solver/closed_form.h"
 #include "solver/events.h"
-#include "solver/still.h"
+#include "solver/integrator.h"
 
 // Whether the bound may fall.
 static bool may_fall(const FcScene* bound) {
@@ -49,8 +49,8 @@ static double first_transient(const FcIntegrator* integrator, double scale) {
 
 static void start_control(FcIntegrator* integrator, double scale) {
     const int model = integrator->interval->scene->friction->model;
-    const bool has_transient =
-        model == FC_DAHL || model == FC_LUGRE || (model == FC_ELASTIC_PLASTIC && !integrator->plane->is_one_dimensional);
+    const bool has_transient = model == FC_DAHL || model == FC_LUGRE ||
+                               (model == FC_ELASTIC_PLASTIC && !integrator->plane->is_one_dimensional);
     fc_control_start(&integrator->control, integrator->plane, integrator->interval,
                      has_transient ? first_transient(integrator, scale) : 0.0);
 }
@@ -66,9 +66,9 @@ static void pass_over_rounding(FcIntegrator* integrator, double before, int stal
         integrator->along.offset = NAN;
         return;
     }
-    integrator->at.u = fc_min(integrator->end,
-                              fc_max(integrator->at.u, before + ldexp(0x1p-50, doublings) *
-                                                                   (fabs(before) + integrator->end - before)));
+    integrator->at.u = fc_min(
+        integrator->end, fc_max(integrator->at.u, before + ldexp(0x1p-50, doublings) *
+                                                               (fabs(before) + integrator->end - before)));
     integrator->at.t = fc_part_time(&integrator->part, integrator->at.u);
 }
 
@@ -81,7 +81,7 @@ static void integrate_part(FcIntegrator* integrator, int number) {
             break;
         }
         const double before = integrator->at.u;
-        if (!fc_take_still(integrator)) {
+        if (!fc_take_closed_form(integrator)) {
             if (integrator->is_slipping) {
                 fc_slip_until_event(integrator);
             } else {
@@ -188,7 +188,8 @@ static void put_result(const FcIntegrator* integrator, FcStepResult* result) {
     result->heat += integrator->heat;
     result->drag += integrator->drag;
     result->meetings += integrator->meetings;
-    const bool slips = fc_has_static_friction(integrator->interval->scene->friction) && integrator->slips != 0;
+    const bool slips =
+        fc_has_static_friction(integrator->interval->scene->friction) && integrator->slips != 0;
     result->slips = !slips ? 0 : integrator->plane->is_one_dimensional && result->delta < 0.0 ? -1 : 1;
     result->on_bound = integrator->is_slipping;
     if (integrator->slip_length > 0.0) {

@@ -3,7 +3,7 @@
 #include <assert.h>
 
 #include "model/regime.h"
-#include "solver/closed_form.h"
+#include "solver/constant_step.h"
 #include "solver/periods.h"
 
 // By cvode or a fixed step, segment by segment.
@@ -78,7 +78,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
         return (FcBristle){0};
     }
     if (!fc_drive_vibrates(&scene->drive)) {
-        return fc_slides_for_ever(scene, from, force);
+        return fc_steady_sliding(scene, from, force);
     }
     FcStepResult end;
     fc_result_start(&end, from, *evaluations);

@@ -4,8 +4,8 @@
 #include <stddef.h>
 
 #include "model/extremes.h"
-#include "solver/period_interpolation.h"
 #include "solver/march.h"
+#include "solver/period_interpolation.h"
 #include "solver/segments.h"
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
@@ -46,7 +46,8 @@ static double to_kink(const FcScene* scene, double k) {
     return nearest;
 }
 
-double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total) {
+double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods,
+                          FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
     const bool is_planar = fc_is_planar(scene, fc_bristle_of(total));
     const bool is_bounded = fc_march_may_meet(scene);
@@ -62,13 +63,13 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
             slipped = total->meetings > 0;
             k += 1.0;
         }
-        const double room = fc_min(longest, fc_min(periods - k, to_kink(scene, k)));
+        const double left = fc_min(longest, fc_min(periods - k, to_kink(scene, k)));
         // On a line periods begin at the bound, if the bristle slips along it for any time.
         const bool is_one_dimensional = slipped && !is_planar && total->slip_side != 0;
         const bool forgets = slipped && !is_one_dimensional;
         const double phase = is_one_dimensional ? total->slip_time : 0.0;
         const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
-        const double count = closes ? room - 1.0 : room;
+        const double count = closes ? left - 1.0 : left;
         const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
         const FcBlock block = {.scene = scene,
                                .is_planar = is_planar,
@@ -93,7 +94,7 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
                 before.evaluations = total->evaluations;
                 *total = before;
             }
-            longest = taken ? 2.0 * room : floor(0.5 * room);
+            longest = taken ? 2.0 * left : floor(0.5 * left);
             if (longest < fewest + 1.0) { // of one more a block on a line would have too few
                 longest = 2.0 * fewest + 2.0;
                 tries_at = k + alone;

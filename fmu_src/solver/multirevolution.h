@@ -13,6 +13,7 @@
 #include "solver/solver.h"
 
 // Takes *total over whole periods of a scene with moving inputs; returns how many it took, fewer if they cost too much.
-double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods, FcStepResult* total);
+double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods,
+                          FcStepResult* total);
 
 #endif

@@ -3,8 +3,8 @@
 #define FC_SOLVER_NODES_H
 
 #include "solver/avx.h"
-#include "solver/time_map.h"
 #include "solver/panel_tables.h"
+#include "solver/time_map.h"
 
 typedef struct {
     double t[FC_POINTS];               // s

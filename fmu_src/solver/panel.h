@@ -11,13 +11,13 @@
 
 // The trajectories whose errors count.
 typedef struct {
-    FcVector delta;    // m, the start of the one
-    double scale;      // m, of the starts of all others, 0 for none
-    double speed;      // m/s, of the surfaces, for work and heat: the mean on a line, else the largest,
-    double push;       // m/s, and of the bristle and its bound together
-    bool for_any;      // the maps are for any start, else for this one alone
-    bool has_constant_coefficients;     // sigma and g of Dahl's law are constant: delta has a closed form
-    bool limit_stands; // g is constant
+    FcVector delta; // m, the start of the one
+    double scale;   // m, of the starts of all others, 0 for none
+    double speed;   // m/s, of the surfaces, for work and heat: the mean on a line, else the largest,
+    double push;    // m/s, and of the bristle and its bound together
+    bool for_any;   // the maps are for any start, else for this one alone
+    bool has_constant_coefficients; // sigma and g of Dahl's law are constant: delta has a closed form
+    bool limit_stands;              // g is constant
 } FcPanelStart;
 
 typedef struct {

@@ -23,10 +23,10 @@ static const double MAX_PART = 0.7;
 static const double MAX_BEFORE = 10.0;
 
 // The number of parts of a block, or up to twice as many, between whose ends the bound is taken as linear; in each the
-// free bristle with the least room is followed. Chosen empirically: half of them may miss a meeting, twice as many cost
+// free bristle with the least margin is followed. Chosen empirically: half of them may miss a meeting, twice as many cost
 // evaluations.
 enum { MAX_PARTS = 64 };
-// The room over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
+// The margin over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
 // it changes by a factor of up to 10 in the block.
 static const double NO_ROOM = 1e-3;
 
@@ -44,7 +44,7 @@ typedef struct {
     double period;   // s
     FcBristle start; // at the block
     double* evaluations;
-    int numbers;                // of a map, or of two in the plane
+    int numbers;               // of a map, or of two in the plane
     double place[MAX_POINTS];  // of the points, in [-2, 2]
     Numbers point[MAX_POINTS]; // Newton's coefficients: divided differences
     int points;
@@ -259,9 +259,7 @@ static bool interpolate(Block* block) {
     return false;
 }
 
-static double periods_of_part(const Block* block) {
-    return fc_max(1.0, floor(block->of->count / MAX_PARTS));
-}
+static double periods_of_part(const Block* block) { return fc_max(1.0, floor(block->of->count / MAX_PARTS)); }
 
 // The time between a and b at which the push turns. If d does not vibrate, that is nearly the reversal of V.
 static double turn_of(FcPushed push, double a, double b, double* evaluations) {
@@ -327,54 +325,54 @@ static bool predicts_slips(const Block* block) {
     return at == 0.0 || (sample(block, at, &error) && less_foretold(block, at, &error) <= allowed(block));
 }
 
-// A free bounded bristle at the start of period k, and a lower bound of its room in this period [m].
+// A free bounded bristle at the start of period k, and a lower bound of its margin in this period [m].
 typedef struct {
-    double k, room;
+    double k, margin;
     FcBristle start;
 } Place;
 
 // The bounds of the motion of a free bounded bristle in the periods of a block.
 typedef struct {
-    double stride;                // periods of a part
-    FcVector middle;              // m, of the swing, from the deflection at a period's start
-    double swing;                 // m, about the middle
-    FcVector V, rate;             // m/s and m/s a period, without the vibration
+    double stride;               // periods of a part
+    FcVector middle;             // m, of the swing, from the deflection at a period's start
+    double swing;                // m, about the middle
+    FcVector V, rate;            // m/s and m/s a period, without the vibration
     double D[2 * MAX_PARTS + 2]; // m, the least bound of the periods at the ends of parts
-} Rooms;
+} Margins;
 
-static Rooms rooms_of(const Block* block) {
+static Margins margins_of(const Block* block) {
     const FcScene first = scene_at(block, 0.0);
     const FcDrive* drive = &first.drive;
     const double swing = hypot(drive->vibration.V_1, drive->vibration.V_2) / drive->omega;
-    Rooms rooms = {.stride = periods_of_part(block),
-                   .swing = 2.0 * swing,
-                   .V = {drive->V.value, drive->V_y.value},
-                   .rate = {drive->V.rate * block->period, drive->V_y.rate * block->period}};
+    Margins margins = {.stride = periods_of_part(block),
+                       .swing = 2.0 * swing,
+                       .V = {drive->V.value, drive->V_y.value},
+                       .rate = {drive->V.rate * block->period, drive->V_y.rate * block->period}};
     if (first.friction->model == FC_ELASTIC_PLASTIC) { // else it may swing about any middle
         const FcPhase phase = fc_drive_phase(drive, 0.0);
         const double square = drive->omega * drive->omega;
-        rooms.middle.x = (drive->V.rate - fc_drive_velocity_at_phase(drive, 0.0, phase).rate) / square;
-        rooms.middle.y = (drive->V_y.rate - fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate) / square;
-        rooms.swing = swing;
+        margins.middle.x = (drive->V.rate - fc_drive_velocity_at_phase(drive, 0.0, phase).rate) / square;
+        margins.middle.y = (drive->V_y.rate - fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate) / square;
+        margins.swing = swing;
     }
-    for (int i = 0; i * rooms.stride < block->of->count + rooms.stride; i++) {
-        const FcScene scene = scene_at(block, fc_min(i * rooms.stride, block->of->count - 1.0));
+    for (int i = 0; i * margins.stride < block->of->count + margins.stride; i++) {
+        const FcScene scene = scene_at(block, fc_min(i * margins.stride, block->of->count - 1.0));
         FcPlane plane;
         fc_plane_make(&plane, &scene);
-        rooms.D[i] = fc_scene_smallest_saturation(&plane.of_static_limit, block->period);
+        margins.D[i] = fc_scene_smallest_saturation(&plane.of_static_limit, block->period);
     }
-    return rooms;
+    return margins;
 }
 
-static double room_at(const Block* block, const Rooms* rooms, double k, FcBristle start) {
-    const int i = (int)(k / rooms->stride);
-    const double length = fc_min(rooms->stride, block->of->count - 1.0 - i * rooms->stride);
-    const double part = length > 0.0 ? (k - i * rooms->stride) / length : 0.0;
-    const double D = rooms->D[i] + part * (rooms->D[i + 1] - rooms->D[i]);
-    const double V = hypot(rooms->V.x + k * rooms->rate.x, rooms->V.y + k * rooms->rate.y) +
-                     hypot(rooms->rate.x, rooms->rate.y); // at the most
-    return (1.0 - NO_ROOM) * D - hypot(start.delta - rooms->middle.x, start.delta_y - rooms->middle.y) -
-           rooms->swing - V * block->period;
+static double margin_at(const Block* block, const Margins* margins, double k, FcBristle start) {
+    const int i = (int)(k / margins->stride);
+    const double length = fc_min(margins->stride, block->of->count - 1.0 - i * margins->stride);
+    const double part = length > 0.0 ? (k - i * margins->stride) / length : 0.0;
+    const double D = margins->D[i] + part * (margins->D[i + 1] - margins->D[i]);
+    const double V = hypot(margins->V.x + k * margins->rate.x, margins->V.y + k * margins->rate.y) +
+                     hypot(margins->rate.x, margins->rate.y); // at the most
+    return (1.0 - NO_ROOM) * D - hypot(start.delta - margins->middle.x, start.delta_y - margins->middle.y) -
+           margins->swing - V * block->period;
 }
 
 // Whether the bristle would meet its bound in that period.
@@ -390,7 +388,7 @@ static bool meets(const Block* block, const Place* place) {
 
 // ---- a stuck bristle of ElasticPlastic, whose motion is known at any time ----
 
-// The number of times in a period at which its room is looked at. Chosen empirically: of 240 scenes made to hide a
+// The number of times in a period at which its margin is looked at. Chosen empirically: of 240 scenes made to hide a
 // meeting half of them miss none. Twice as many cost evaluations.
 enum { PHASES = 8 };
 
@@ -410,30 +408,30 @@ static FcBristle stuck_at(const Stuck* of, double t) {
 }
 
 // The distance [m] to the bound, at the part `phase` of period k, or at the next end of the block.
-static double room_of_stuck(const Stuck* of, double k, double phase) {
+static double margin_of_stuck(const Stuck* of, double k, double phase) {
     const double t = fc_min(fc_max(0.0, k + phase), of->block->of->count) * of->block->period;
     *of->block->evaluations += 1.0;
     return fc_bound(&of->plane, 0, t).D - fc_size(stuck_at(of, t));
 }
 
-// The least room of period k: that at the vertex of a parabola through three times.
-static double least_room(const Stuck* of, double k) {
+// The least margin of period k: that at the vertex of a parabola through three times.
+static double least_margin(const Stuck* of, double k) {
     double least = HUGE_VAL;
     double at = 0.0;
     for (int i = 0; i < PHASES; i++) {
-        const double room = room_of_stuck(of, k, (double)i / PHASES);
-        at = room < least ? i : at;
-        least = fc_min(least, room);
+        const double margin = margin_of_stuck(of, k, (double)i / PHASES);
+        at = margin < least ? i : at;
+        least = fc_min(least, margin);
     }
-    const double before = room_of_stuck(of, k, (at - 1.0) / PHASES);
-    const double after = room_of_stuck(of, k, (at + 1.0) / PHASES);
+    const double before = margin_of_stuck(of, k, (at - 1.0) / PHASES);
+    const double after = margin_of_stuck(of, k, (at + 1.0) / PHASES);
     const double bend = before - 2.0 * least + after;
     const double vertex = bend > 0.0 ? at + 0.5 * (before - after) / bend : at;
-    return fc_min(least, room_of_stuck(of, k, vertex / PHASES));
+    return fc_min(least, margin_of_stuck(of, k, vertex / PHASES));
 }
 
 // Whether a bristle that sticks in the block would meet its bound in it: it is followed through the tightest period and
-// those beside it. It has no room, by estimate, in these places.
+// those beside it. It has no margin, by estimate, in these places.
 static bool meets_while_stuck(const Block* block, const Place* suspects, int places) {
     Stuck of = {.block = block, .first = scene_at(block, 0.0)};
     fc_plane_make(&of.plane, &of.first);
@@ -441,17 +439,16 @@ static bool meets_while_stuck(const Block* block, const Place* suspects, int pla
     double part = 0.0;
     double least = HUGE_VAL;
     for (int i = 0; i < places; i++) {
-        const double room = least_room(&of, suspects[i].k);
-        part = room < least ? suspects[i].k : part;
-        least = fc_min(least, room);
+        const double margin = least_margin(&of, suspects[i].k);
+        part = margin < least ? suspects[i].k : part;
+        least = fc_min(least, margin);
     }
     const double stride = periods_of_part(block);
     double tightest = part;
-    for (double k = fc_max(0.0, part - stride); k < fc_min(part + stride + 1.0, block->of->count);
-         k += 1.0) {
-        const double room = least_room(&of, k);
-        tightest = room < least ? k : tightest;
-        least = fc_min(least, room);
+    for (double k = fc_max(0.0, part - stride); k < fc_min(part + stride + 1.0, block->of->count); k += 1.0) {
+        const double margin = least_margin(&of, k);
+        tightest = margin < least ? k : tightest;
+        least = fc_min(least, margin);
     }
     for (double k = fc_max(0.0, tightest - 1.0); k < fc_min(tightest + 2.0, block->of->count); k += 1.0) {
         const Place place = {k, 0.0, stuck_at(&of, k * block->period)};
@@ -462,7 +459,7 @@ static bool meets_while_stuck(const Block* block, const Place* suspects, int pla
     return false;
 }
 
-// Whether a bristle that relaxes would meet its bound in one of the places in which it has no room by estimate.
+// Whether a bristle that relaxes would meet its bound in one of the places in which it has no margin by estimate.
 static bool meets_in_some(const Block* block, const Place* suspects, int places) {
     for (int i = 0; i < places; i++) {
         if (meets(block, &suspects[i])) {
@@ -488,20 +485,20 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
     }
     FcStepResult result = *total;
     const bool is_watched = of->side == 0 && of->warm_up == 0 && of->is_bounded;
-    const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = of->count};
-    Place suspects[2 * MAX_PARTS + 1]; // the period with the least room of each part
+    const Margins margins = is_watched ? margins_of(block) : (Margins){.stride = of->count};
+    Place suspects[2 * MAX_PARTS + 1]; // the period with the least margin of each part
     int places = 0;
-    Place least = {.room = HUGE_VAL};
+    Place least = {.margin = HUGE_VAL};
     for (double k = 0.0; k < of->count; k += 1.0) {
         if (is_watched) {
             const FcBristle start = {.delta = result.delta, .delta_y = result.delta_y};
-            const Place at = {k, room_at(block, &rooms, k, start), start};
-            least = at.room <= least.room ? at : least;
-            if (fmod(k + 1.0, rooms.stride) == 0.0 || k == of->count - 1.0) {
-                if (least.room <= 0.0) {
+            const Place at = {k, margin_at(block, &margins, k, start), start};
+            least = at.margin <= least.margin ? at : least;
+            if (fmod(k + 1.0, margins.stride) == 0.0 || k == of->count - 1.0) {
+                if (least.margin <= 0.0) {
                     suspects[places++] = least;
                 }
-                least.room = HUGE_VAL;
+                least.margin = HUGE_VAL;
             }
         }
         const Numbers at = map_at(block, k);
@@ -511,8 +508,8 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
         }
     }
     const bool sticks = of->scene->friction->model == FC_ELASTIC_PLASTIC;
-    if (places > 0 && (sticks ? meets_while_stuck(block, suspects, places)
-                              : meets_in_some(block, suspects, places))) {
+    if (places > 0 &&
+        (sticks ? meets_while_stuck(block, suspects, places) : meets_in_some(block, suspects, places))) {
         return false;
     }
     result.on_bound = false;

@@ -7,8 +7,8 @@
 
 #include "model/extremes.h"
 #include "model/regime.h"
-#include "solver/multirevolution.h"
 #include "solver/march.h"
+#include "solver/multirevolution.h"
 #include "solver/segments.h"
 
 // The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
@@ -48,7 +48,8 @@ typedef struct {
     bool is_bounded, is_planar;
     bool has_free_map;
     FcMap free_map, free_map_across;
-    double largest_free_start[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
+    double largest_free_start
+        [2]; // m, the highest and the lowest start that meets no bound; infinite if not known
     FcStepResult total;
     double done; // periods
     // After a period that anchor its bound: the last one that was kept.
@@ -60,63 +61,63 @@ typedef struct {
 
 static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of(result)); }
 
-static FcMap free_map_of(PeriodicSearch* walk) {
-    if (!walk->has_free_map) {
-        walk->free_map =
-            fc_march_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
-                         walk->is_planar ? &walk->free_map_across : NULL, &walk->total.evaluations);
-        if (walk->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
-            walk->free_map.offset = walk->scene->drive.V.value * walk->period;
-            walk->free_map_across.offset = walk->scene->drive.V_y.value * walk->period;
+static FcMap free_map_of(PeriodicSearch* search) {
+    if (!search->has_free_map) {
+        search->free_map =
+            fc_march_map(search->scene, search->options, search->period, size_of(&search->total),
+                         search->is_planar ? &search->free_map_across : NULL, &search->total.evaluations);
+        if (search->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
+            search->free_map.offset = search->scene->drive.V.value * search->period;
+            search->free_map_across.offset = search->scene->drive.V_y.value * search->period;
         }
-        walk->has_free_map = true;
-        walk->largest_free_start[0] = walk->largest_free_start[1] = INFINITY;
+        search->has_free_map = true;
+        search->largest_free_start[0] = search->largest_free_start[1] = INFINITY;
     }
-    return walk->free_map;
+    return search->free_map;
 }
 
 // The farthest start to that side (1 or -1) that meets no bound, from the end of the farthest start of all.
-static double edge_of(PeriodicSearch* walk, int side) {
+static double largest_free_start_of(PeriodicSearch* search, int side) {
     assert(side == 1 || side == -1);
-    double* largest_free_start = &walk->largest_free_start[side < 0];
+    double* largest_free_start = &search->largest_free_start[side < 0];
     if (isfinite(*largest_free_start)) {
         return *largest_free_start;
     }
-    const FcMap* map = &walk->free_map;
+    const FcMap* map = &search->free_map;
     FcPlane plane;
-    fc_plane_make(&plane, walk->scene);
+    fc_plane_make(&plane, search->scene);
     const double farthest = side * fc_bound(&plane, 0, 0.0).D;
-    FcStepResult end = {.delta = farthest, .evaluations = walk->total.evaluations};
+    FcStepResult end = {.delta = farthest, .evaluations = search->total.evaluations};
     // With static friction the bound that is anchor is the one without the drop.
-    const bool drops = fc_has_static_friction(walk->scene->friction);
-    fc_march_step(drops ? &plane.of_static_limit : walk->scene, walk->options, walk->period, &end);
-    walk->total.evaluations = end.evaluations;
+    const bool drops = fc_has_static_friction(search->scene->friction);
+    fc_march_step(drops ? &plane.of_static_limit : search->scene, search->options, search->period, &end);
+    search->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
-    const double room = side * (end.delta - map->offset);
-    *largest_free_start = side * fc_min(side * farthest, room / kept);
+    const double margin = side * (end.delta - map->offset);
+    *largest_free_start = side * fc_min(side * farthest, length / kept);
     return *largest_free_start;
 }
 
 // Takes *total over n free periods.
-static void take_free(const PeriodicSearch* walk, double n, FcStepResult* total) {
-    const FcMap map = fc_map_power(&walk->free_map, n);
+static void take_free(const PeriodicSearch* search, double n, FcStepResult* total) {
+    const FcMap map = fc_map_power(&search->free_map, n);
     fc_map_apply(&map, total);
-    if (walk->is_planar) {
-        const FcMap across = fc_map_power(&walk->free_map_across, n);
+    if (search->is_planar) {
+        const FcMap across = fc_map_power(&search->free_map_across, n);
         fc_map_apply_across(&across, total);
     }
 }
 
 // Takes *total to the limit of infinitely many free periods.
-static void settle(const PeriodicSearch* walk, FcStepResult* total) {
-    const FcMap* map = &walk->free_map;
-    const FcMap* across = &walk->free_map_across;
+static void settle(const PeriodicSearch* search, FcStepResult* total) {
+    const FcMap* map = &search->free_map;
+    const FcMap* across = &search->free_map_across;
     const double least = 1e-300 * fc_max(1.0, fc_max(fabs(map->offset), fabs(across->offset)));
     if (!(map->relaxation > least)) {
         return; // nothing relaxes
     }
     total->delta = map->offset / map->relaxation;
-    total->delta_y = walk->is_planar ? across->offset / map->relaxation : total->delta_y;
+    total->delta_y = search->is_planar ? across->offset / map->relaxation : total->delta_y;
 }
 
 // What a period and the power of a map cost beside their evaluations, in evaluations. Chosen empirically: with them no watched
@@ -125,53 +126,54 @@ static const double OF_A_PERIOD = 10.0;
 static const double OF_A_POWER = 30.0;
 
 // Whether the period after n free ones meets the bound; n may be infinite.
-static bool meets_after(PeriodicSearch* walk, double n) {
-    FcStepResult end = walk->total;
+static bool meets_after(PeriodicSearch* search, double n) {
+    FcStepResult end = search->total;
     if (isinf(n)) {
-        settle(walk, &end);
+        settle(search, &end);
     } else {
-        take_free(walk, n, &end);
-        walk->total.evaluations += OF_A_POWER;
+        take_free(search, n, &end);
+        search->total.evaluations += OF_A_POWER;
     }
     const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
-    const FcBristle reached = fc_project_onto_bound(walk->scene, bristle);
+    const FcBristle reached = fc_project_onto_bound(search->scene, bristle);
     if (reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) {
         return true;
     }
     end.meetings = 0;
-    end.evaluations = walk->total.evaluations;
-    fc_march_step(walk->scene, walk->options, walk->period, &end);
-    walk->total.evaluations = end.evaluations;
+    end.evaluations = search->total.evaluations;
+    fc_march_step(search->scene, search->options, search->period, &end);
+    search->total.evaluations = end.evaluations;
     return end.meetings > 0;
 }
 
 // free_periods by steps. The starts of free periods lie on a straight line, along which |delta| is convex at
 // each phase. So all periods up to a last one are free.
-static double free_periods_by_steps(PeriodicSearch* walk, double left) {
-    const FcMap map = free_map_of(walk);
-    const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
-                               walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
+static double free_periods_by_steps(PeriodicSearch* search, double left) {
+    const FcMap map = free_map_of(search);
+    const double moved = hypot(map.offset - map.relaxation * search->total.delta,
+                               search->free_map_across.offset - map.relaxation * search->total.delta_y);
     FcPlane plane;
-    fc_plane_make(&plane, walk->scene);
+    fc_plane_make(&plane, search->scene);
     const double rounding = ROUNDING_OF_EDGE * fc_bound(&plane, 0, 0.0).D;
     if (map.relaxation == 0.0 ? moved == 0.0 : moved <= rounding) {
-        return map.relaxation > 0.0 && meets_after(walk, 0.0) ? 0.0 : left;
+        return map.relaxation > 0.0 && meets_after(search, 0.0) ? 0.0 : left;
     }
-    if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {
+    if (map.relaxation > 0.0 && !meets_after(search, HUGE_VAL) && !meets_after(search, 0.0)) {
         return left;
     }
     double free = 0.0; // periods that are free
     double more = 1.0; // periods that are not all free, once they are found
-    while (free < left && walk->total.evaluations <= FC_MAX_EVALUATIONS && !meets_after(walk, more - 1.0)) {
+    while (free < left && search->total.evaluations <= FC_MAX_EVALUATIONS &&
+           !meets_after(search, more - 1.0)) {
         free = more;
         more *= 2.0;
     }
-    while (free < left && more - free > 1.0 && walk->total.evaluations <= FC_MAX_EVALUATIONS) {
+    while (free < left && more - free > 1.0 && search->total.evaluations <= FC_MAX_EVALUATIONS) {
         const double middle = floor(0.5 * (free + more));
         if (middle == free || middle == more) { // beyond 2^53
             break;
         }
-        if (meets_after(walk, middle - 1.0)) {
+        if (meets_after(search, middle - 1.0)) {
             more = middle;
         } else {
             free = middle;
@@ -182,53 +184,54 @@ static double free_periods_by_steps(PeriodicSearch* walk, double left) {
 
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
 // (1 - P) in n of them, with the first shift s.
-static double free_periods(PeriodicSearch* walk, double left) {
-    const FcMap map = free_map_of(walk);
-    if (walk->is_planar || map.relaxation > MAX_FORGOTTEN) {
-        return free_periods_by_steps(walk, left);
+static double free_periods(PeriodicSearch* search, double left) {
+    const FcMap map = free_map_of(search);
+    if (search->is_planar || map.relaxation > MAX_FORGOTTEN) {
+        return free_periods_by_steps(search, left);
     }
-    const double delta = walk->total.delta;
+    const double delta = search->total.delta;
     const double s = map.offset - map.relaxation * delta;
     if (s == 0.0) {
         return left;
     }
     const int side = s > 0.0 ? 1 : -1;
-    const double largest_free_start = edge_of(walk, side);
-    const double room = side * (largest_free_start - delta) / fabs(s);
-    if (!(room * map.relaxation < 1.0)) { // never
+    const double largest_free_start = largest_free_start_of(search, side);
+    const double margin = side * (largest_free_start - delta) / fabs(s);
+    if (!(margin * map.relaxation < 1.0)) { // never
         return left;
     }
     if (!(side * (largest_free_start - delta) > ROUNDING_OF_EDGE * fabs(largest_free_start))) {
         return 0.0;
     }
-    const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * room) / log1p(-map.relaxation) : room;
+    const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * margin) / log1p(-map.relaxation) : margin;
     assert(!(n < 0.0));
     return fc_min(left, floor(n) + 1.0);
 }
 
-static void take_cycles(PeriodicSearch* walk, double times) {
-    assert(times >= 0.0 && walk->anchor_period >= 0.0 && walk->anchor_period < walk->done);
-    FcStepResult* total = &walk->total;
-    const FcStepResult* anchor = &walk->anchor;
+static void take_cycles(PeriodicSearch* search, double times) {
+    assert(times >= 0.0 && search->anchor_period >= 0.0 && search->anchor_period < search->done);
+    FcStepResult* total = &search->total;
+    const FcStepResult* anchor = &search->anchor;
     total->impulse += times * (total->impulse - anchor->impulse);
     total->impulse_y += times * (total->impulse_y - anchor->impulse_y);
     total->work += times * (total->work - anchor->work);
     total->heat += times * (total->heat - anchor->heat);
     total->drag += times * (total->drag - anchor->drag);
-    walk->done += times * (walk->done - walk->anchor_period);
+    search->done += times * (search->done - search->anchor_period);
 }
 
 // Whether the bristle has returned to its state after the kept period.
-static bool repeats(PeriodicSearch* walk) {
-    const FcStepResult* total = &walk->total;
+static bool repeats(PeriodicSearch* search) {
+    const FcStepResult* total = &search->total;
     const double size = size_of(total);
     const double changed =
-        fc_max(fabs(total->delta - walk->anchor.delta), fabs(total->delta_y - walk->anchor.delta_y));
-    if (walk->anchor_period < 0.0 || total->slips != walk->anchor.slips || !(changed <= SAME_END * size)) {
+        fc_max(fabs(total->delta - search->anchor.delta), fabs(total->delta_y - search->anchor.delta_y));
+    if (search->anchor_period < 0.0 || total->slips != search->anchor.slips ||
+        !(changed <= SAME_END * size)) {
         return false;
     }
     return changed <= SAME_END * MIN_PART * size ||
-           changed <= SAME_END * fc_min(1.0, free_map_of(walk).relaxation) * size;
+           changed <= SAME_END * fc_min(1.0, free_map_of(search).relaxation) * size;
 }
 
 // The farthest that a step of Newton moves the deflection, over it. Chosen empirically: without a limit one of
@@ -254,113 +257,116 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
     const double most = MAX_OF_NEWTON * size_of(total);
     const double part = length > most ? most / length : 1.0;
     const FcBristle reached = fc_project_onto_bound(scene, (FcBristle){.delta = from.x + part * start.x,
-                                                          .delta_y = from.y + part * start.y,
-                                                          .slips = total->slips});
+                                                                       .delta_y = from.y + part * start.y,
+                                                                       .slips = total->slips});
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
     return true;
 }
 
 // Whether the mean since the kept period differs from *mean, which it becomes.
-static bool still_drifts(const PeriodicSearch* walk, FcVector* mean) {
-    const double periods = walk->done - walk->anchor_period;
+static bool still_drifts(const PeriodicSearch* search, FcVector* mean) {
+    const double periods = search->done - search->anchor_period;
     const FcVector before = *mean;
-    *mean = (FcVector){walk->total.impulse / periods, walk->total.impulse_y / periods};
-    const double allowed = walk->options->tolerance * walk->options->force * walk->period;
+    *mean = (FcVector){search->total.impulse / periods, search->total.impulse_y / periods};
+    const double allowed = search->options->tolerance * search->options->force * search->period;
     return !(hypot(mean->x - before.x, mean->y - before.y) <= allowed);
 }
 
-static void walk_to_repetition(PeriodicSearch* walk, double periods) {
-    FcStepResult* total = &walk->total;
-    walk->anchor_period = -1.0;
-    walk->least.delta = INFINITY;
+static void search_repetition(PeriodicSearch* search, double periods) {
+    FcStepResult* total = &search->total;
+    search->anchor_period = -1.0;
+    search->least.delta = INFINITY;
     int meetings = 0;
     // With static friction a step of Newton may lead from one cycle to another.
-    const bool may_step = walk->is_planar && isinf(periods) && !fc_has_static_friction(walk->scene->friction);
+    const bool may_step =
+        search->is_planar && isinf(periods) && !fc_has_static_friction(search->scene->friction);
     double keep = 1.0;                    // the number of the next meeting that is kept
     FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
-    const int most = (walk->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MAX_MEETINGS;
-    while (walk->done < periods && total->evaluations <= FC_MAX_EVALUATIONS && meetings < most) {
+    const int most = (search->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MAX_MEETINGS;
+    while (search->done < periods && total->evaluations <= FC_MAX_EVALUATIONS && meetings < most) {
         total->evaluations += OF_A_PERIOD;
         const FcStepResult before = *total;
         total->meetings = 0;
-        fc_march_step(walk->scene, walk->options, walk->period, total);
-        walk->done += 1.0;
+        fc_march_step(search->scene, search->options, search->period, total);
+        search->done += 1.0;
         const bool was_free = total->meetings == 0 && total->slips == 0;
         if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
-            walk->anchor_period = -1.0;
+            search->anchor_period = -1.0;
             return;
         }
-        const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
+        const double n =
+            was_free && search->done < periods ? free_periods(search, periods - search->done) : 0.0;
         if (n == 0.0) { // it has anchor its bound, or will in the next period
             meetings++;
-            if (!was_free && (isinf(walk->least.delta) || size_of(total) < fc_size(walk->least))) {
-                walk->least = fc_bristle_of(total);
+            if (!was_free && (isinf(search->least.delta) || size_of(total) < fc_size(search->least))) {
+                search->least = fc_bristle_of(total);
             }
-            if (repeats(walk)) {
+            if (repeats(search)) {
                 return;
             }
             // Each is kept half as long again as the last, so that a cycle of any length returns to it.
             if (meetings >= keep) {
                 keep = ceil(1.5 * meetings);
-                if (!still_drifts(walk, &mean) && meetings > MAX_MEETINGS) {
+                if (!still_drifts(search, &mean) && meetings > MAX_MEETINGS) {
                     return;
                 }
                 if (isinf(periods)) { // sums and number of free periods would take digits from the cycle's
                     fc_result_start(total, fc_bristle_of(total), total->evaluations);
-                    walk->done = 0.0;
+                    search->done = 0.0;
                 }
-                walk->anchor = *total;
-                walk->anchor_period = walk->done;
-                walk->least.delta = INFINITY;
+                search->anchor = *total;
+                search->anchor_period = search->done;
+                search->least.delta = INFINITY;
             } else if (may_step && !was_free &&
                        meetings < MAX_MEETINGS / 2 && // the mean over the last third must be one
-                       take_newton_step(walk->scene, (FcVector){before.delta, before.delta_y}, total)) {
-                walk->anchor_period = -1.0; // periods repeat only if no step lies between them
+                       take_newton_step(search->scene, (FcVector){before.delta, before.delta_y}, total)) {
+                search->anchor_period = -1.0; // periods repeat only if no step lies between them
             }
             continue;
         }
         if (isinf(n)) {
-            settle(walk, total);
-            walk->anchor_period = -1.0;
+            settle(search, total);
+            search->anchor_period = -1.0;
             return;
         }
-        take_free(walk, n, total);
-        walk->done += n;
+        take_free(search, n, total);
+        search->done += n;
     }
 }
 
-static PeriodicSearch walk_from(const FcScene* scene, const FcSolverOptions* options, const FcStepResult* start) {
+static PeriodicSearch search_from(const FcScene* scene, const FcSolverOptions* options,
+                                const FcStepResult* start) {
     return (PeriodicSearch){.scene = scene,
-                  .options = options,
-                  .period = 1.0 / scene->drive.vibration.f,
-                  .is_bounded = fc_march_may_meet(scene),
-                  .is_planar = fc_is_planar(scene, fc_bristle_of(start)),
-                  .total = *start};
+                            .options = options,
+                            .period = 1.0 / scene->drive.vibration.f,
+                            .is_bounded = fc_march_may_meet(scene),
+                            .is_planar = fc_is_planar(scene, fc_bristle_of(start)),
+                            .total = *start};
 }
 
 static double step_over_equal_periods(const FcScene* scene, const FcSolverOptions* options, double periods,
                                       FcStepResult* total) {
-    PeriodicSearch walk = walk_from(scene, options, total);
-    if (!walk.is_bounded) {
-        free_map_of(&walk);
-        take_free(&walk, periods, &walk.total);
-        *total = walk.total;
-        return walk.done;
+    PeriodicSearch search = search_from(scene, options, total);
+    if (!search.is_bounded) {
+        free_map_of(&search);
+        take_free(&search, periods, &search.total);
+        *total = search.total;
+        return search.done;
     }
-    while (walk.done < periods && walk.total.evaluations <= FC_MAX_EVALUATIONS) {
-        walk_to_repetition(&walk, periods);
-        const double cycle = walk.done - walk.anchor_period;
-        if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
-            take_cycles(&walk, floor((periods - walk.done) / cycle));
-        } else if (walk.done < periods && walk.anchor_period < 0.0) { // each period leads back
-            free_map_of(&walk);
-            take_free(&walk, periods - walk.done, &walk.total);
-            walk.done = periods;
+    while (search.done < periods && search.total.evaluations <= FC_MAX_EVALUATIONS) {
+        search_repetition(&search, periods);
+        const double cycle = search.done - search.anchor_period;
+        if (search.done < periods && cycle > 0.0 && repeats(&search)) {
+            take_cycles(&search, floor((periods - search.done) / cycle));
+        } else if (search.done < periods && search.anchor_period < 0.0) { // each period leads back
+            free_map_of(&search);
+            take_free(&search, periods - search.done, &search.total);
+            search.done = periods;
         }
     }
-    *total = walk.total;
-    return walk.done;
+    *total = search.total;
+    return search.done;
 }
 
 // The options of a step with several intervals whose contact may stiffen.
@@ -426,28 +432,28 @@ FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options
         fc_open_contact_step(end);
         return (FcVector){0.0, 0.0};
     }
-    PeriodicSearch walk = walk_from(scene, options, end);
-    if (walk.is_bounded) {
-        walk_to_repetition(&walk, HUGE_VAL);
-        const double cycle = walk.done - walk.anchor_period;
-        if (walk.anchor_period >= 0.0 && cycle > 0.0) {
-            *scatters = fc_has_static_friction(scene->friction) && !repeats(&walk);
-            *end = walk.total;
-            if (isfinite(walk.least.delta)) {
-                end->delta = walk.least.delta;
-                end->delta_y = walk.least.delta_y;
-                end->slips = walk.least.slips;
+    PeriodicSearch search = search_from(scene, options, end);
+    if (search.is_bounded) {
+        search_repetition(&search, HUGE_VAL);
+        const double cycle = search.done - search.anchor_period;
+        if (search.anchor_period >= 0.0 && cycle > 0.0) {
+            *scatters = fc_has_static_friction(scene->friction) && !repeats(&search);
+            *end = search.total;
+            if (isfinite(search.least.delta)) {
+                end->delta = search.least.delta;
+                end->delta_y = search.least.delta_y;
+                end->slips = search.least.slips;
             }
-            return (FcVector){(walk.total.impulse - walk.anchor.impulse) / cycle * f,
-                              (walk.total.impulse_y - walk.anchor.impulse_y) / cycle * f};
+            return (FcVector){(search.total.impulse - search.anchor.impulse) / cycle * f,
+                              (search.total.impulse_y - search.anchor.impulse_y) / cycle * f};
         }
-        free_map_of(&walk);
+        free_map_of(&search);
     } else {
-        free_map_of(&walk);
-        settle(&walk, &walk.total);
+        free_map_of(&search);
+        settle(&search, &search.total);
     }
-    *end = walk.total;
+    *end = search.total;
     FcStepResult period = {.delta = end->delta, .delta_y = end->delta_y};
-    take_free(&walk, 1.0, &period);
+    take_free(&search, 1.0, &period);
     return (FcVector){period.impulse * f, period.impulse_y * f};
 }

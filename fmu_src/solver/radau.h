@@ -36,7 +36,7 @@ FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
     const double top = fc_larger(high);
     const double before = fc_larger(middle);
     const double square = fc_max(fc_max(fc_fall(0.5 * fabs(at_start), top), fc_fall(top, before)),
-                                  sqrt(fc_fall(before, fc_larger(low))));
+                                 sqrt(fc_fall(before, fc_larger(low))));
     return (FcTail){top, sqrt(square)};
 }
 

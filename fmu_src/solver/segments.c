@@ -76,7 +76,7 @@ static FcSolverOptions options_of_segment(const FcSolverOptions* options, const 
 }
 
 void fc_march_segments(const FcScene* scene, const FcSolverOptions* options, double duration,
-                    FcStepResult* total) {
+                       FcStepResult* total) {
     FcSegments segments;
     fc_segments_start(&segments, scene, duration);
     while (total->evaluations <= FC_MAX_EVALUATIONS && fc_next_segment(&segments)) {

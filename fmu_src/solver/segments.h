@@ -31,6 +31,6 @@ void fc_project_result(const FcScene* scene, FcStepResult* result);
 
 // Takes *total over an interval of at most a period, segment by segment.
 void fc_march_segments(const FcScene* scene, const FcSolverOptions* options, double duration,
-                    FcStepResult* total);
+                       FcStepResult* total);
 
 #endif

@@ -125,7 +125,8 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStar
     panel->limit = nodes->limit[LAST];
     panel->rate = fc_product(n[LAST], at[LAST].V) / D_end;
     const double force = F_x[LAST];
-    if (plane->is_one_dimensional && from->limit_stands && plane->scene->friction->sigma_1 == 0.0) { // it is exact
+    if (plane->is_one_dimensional && from->limit_stands &&
+        plane->scene->friction->sigma_1 == 0.0) { // it is exact
         map->impulse_offset = force * nodes->duration;
         map->work_offset = force * nodes->moved[LAST];
         map->heat_offset = map->work_offset - fabs(force) * (D_end - D_start);

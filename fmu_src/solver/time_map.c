@@ -124,9 +124,10 @@ static FcSpeedBound speed_bound_at(const FcPlane* plane, double t) {
     const FcDrive* drive = &plane->scene->drive;
     const FcPhase phase = fc_drive_phase(drive, t);
     const FcVelocity x = fc_drive_velocity_at_phase(drive, t, phase);
-    const FcVelocity y = plane->is_one_dimensional ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
+    const FcVelocity y =
+        plane->is_one_dimensional ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
     return (FcSpeedBound){{hypot(x.V, y.V), hypot(x.rate, y.rate), hypot(x.curvature, y.curvature) / 2.0,
-                     hypot(x.third, y.third) / 6.0}};
+                           hypot(x.third, y.third) / 6.0}};
 }
 
 // The root of a x^n = change; infinite if a is 0.
@@ -188,9 +189,11 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     of.beyond = of.length;
     // A Stribeck curve, if V comes into it.
     const double V_S = scene->friction->V_S;
-    const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.speed_bound.of[0] < FC_END_OF_CURVE * V_S;
+    const bool has_curve =
+        fc_has_stribeck_curve(scene->friction) && of.speed_bound.of[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
-        const double of_curve = fc_max(time_of_change(&of.speed_bound, V_S), plane->is_one_dimensional ? 0.0 : eps);
+        const double of_curve =
+            fc_max(time_of_change(&of.speed_bound, V_S), plane->is_one_dimensional ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
             of.edge = time_of_change(&of.speed_bound, FC_END_OF_CURVE * V_S);
         }
@@ -217,7 +220,7 @@ static int line_centers(const FcPlane* plane, double h, double tolerance, Center
     // Behind the start, if |V| grows there.
     const FcVelocity now = fc_drive_velocity(drive, 0.0);
     const double behind = -fc_min(time_of_power(fabs(now.rate), 1, fabs(now.V)),
-                                    time_of_power(0.5 * fabs(now.curvature), 2, fabs(now.V)));
+                                  time_of_power(0.5 * fabs(now.curvature), 2, fabs(now.V)));
     const bool is_reversal = fabs(now.V) <= ROUNDING_OF_V * (fabs(drive->V.value) + drive->vibration.V_1);
     const bool grows = now.V * now.rate > 0.0 || (now.rate == 0.0 && now.V * now.curvature > 0.0);
     if (is_reversal || (grows && behind > -h)) {
@@ -315,7 +318,7 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
     assert(h > 0.0 && tolerance > 0.0);
     Center centers[MAX_CENTERS];
     const int found = plane->is_one_dimensional ? line_centers(plane, h, tolerance, centers)
-                                     : plane_centers(plane, h, tolerance, centers);
+                                                : plane_centers(plane, h, tolerance, centers);
     int count = 0;
     double start = 0.0;
     for (int i = 0; i <= found && start < h && count + 4 <= FC_MAX_PARTS; i++) {

@@ -23,7 +23,7 @@ typedef struct {
     double length; // s, L; infinite for t = t_c + u
 } FcTimeMap;
 
-double fc_time_map_t(const FcTimeMap* in, double u); // s
+double fc_time_map_t(const FcTimeMap* in, double u);     // s
 double fc_time_map_dt_du(const FcTimeMap* in, double u); // s, dt/du
 double fc_time_map_u(const FcTimeMap* in, double t);
 
@@ -36,8 +36,9 @@ typedef struct {
 typedef struct {
     double start, end; // s
     FcTimeMap in;
-    int side;      // along a line, the sign of V; 0 in the plane
-    double strip_ratio; // the strip of u in which the force is analytic, over that of a reversal at which V' != 0
+    int side; // along a line, the sign of V; 0 in the plane
+    double
+        strip_ratio; // the strip of u in which the force is analytic, over that of a reversal at which V' != 0
     FcSpeedBound speed_bound;
 } FcPart;
 
@@ -46,7 +47,8 @@ double fc_part_time(const FcPart* part, double u); // s, within the part in spit
 // An upper bound of |V| [m/s] at the distance x [s] from the center.
 static inline double fc_part_speed(const FcPart* part, double x) {
     x = fabs(x);
-    return part->speed_bound.of[0] + x * (part->speed_bound.of[1] + x * (part->speed_bound.of[2] + x * part->speed_bound.of[3]));
+    return part->speed_bound.of[0] +
+           x * (part->speed_bound.of[1] + x * (part->speed_bound.of[2] + x * part->speed_bound.of[3]));
 }
 
 // Room for two centers a period over less than three periods, with up to four parts each.

@@ -2,8 +2,8 @@
 #include <float.h>
 
 #include "check.h"
-#include "solver/panel.h"
 #include "solver/dense_output.h"
+#include "solver/panel.h"
 #include "solver/tuning.h"
 #include "table_1.h"
 
@@ -28,7 +28,8 @@ static void make(Line* line, double stiffness, FcLinearInput V) {
 }
 
 // From a time to another one, in the variable t = length sinh(u), or t = u.
-static FcPanel panel_over(const Line* line, double start, double end, double length, const FcPanelStart* from) {
+static FcPanel panel_over(const Line* line, double start, double end, double length,
+                          const FcPanelStart* from) {
     const FcTimeMap in = {0.0, length};
     const FcPart part = {.start = start, .end = end, .in = in, .side = 1, .strip_ratio = 1.0};
     const double u = fc_time_map_u(&in, start);
@@ -128,7 +129,8 @@ static void processors_compute_the_same_numbers(void) {
     fc_plane_make(&line.plane, &line.scene);
     line.plane.is_one_dimensional = true;
     const FcPart part = {.end = 1e-5, .in = {0.0, 1e-6}, .side = 1, .strip_ratio = 1.0};
-    const FcPanelStart from = {.delta = {1e-9, 0.0}, .speed = 0.02, .push = 0.02, .for_any = true, .scale = 1e-8};
+    const FcPanelStart from = {
+        .delta = {1e-9, 0.0}, .speed = 0.02, .push = 0.02, .for_any = true, .scale = 1e-8};
     fc_nodes_make(&line.plane, &part, 0.1, 1.3, &nodes[0]);
     fc_free_panel(&line.plane, &nodes[0], &from, &panels[0]);
     FC_FASTEST(fc_nodes_make)(&line.plane, &part, 0.1, 1.3, &nodes[1]);
