@@ -66,18 +66,18 @@ if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND NOT CMAKE_CROSSCOMPILING)
     list(APPEND CMAKE_C_CREATE_SHARED_LIBRARY "\"${CMAKE_COMMAND}\" -E rename <TARGET>.part <TARGET>")
 endif()
 
-# The loops over the points of a panel a second time, for processors with AVX, under names that end in _avx (fmu_src/solver/avx.h).
+# The loops over the points of a panel a second time, for processors with AVX, under names that end in _avx (fmu_src/solver/panel/arithmetic.h).
 function(fc_add_avx core)
     if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
         return()
     endif()
     set(solver "${CMAKE_SOURCE_DIR}/fmu_src/solver")
-    add_library(${core}_avx OBJECT EXCLUDE_FROM_ALL "${solver}/nodes.c" "${solver}/free_panel.c" "${solver}/dense_output.c"
-                "${solver}/body_panel.c")
+    add_library(${core}_avx OBJECT EXCLUDE_FROM_ALL "${solver}/panel/nodes.c" "${solver}/panel/relaxation.c"
+                "${solver}/integrate/dense_output.c" "${solver}/body/body_panel.c")
     target_include_directories(${core}_avx PRIVATE "${CMAKE_SOURCE_DIR}/fmu_src")
     target_compile_options(${core}_avx PRIVATE -mavx $<TARGET_PROPERTY:${core},INTERFACE_COMPILE_OPTIONS>)
     target_compile_definitions(${core}_avx PRIVATE
-        fc_nodes_make=fc_nodes_make_avx fc_free_panel=fc_free_panel_avx fc_first_upcrossing=fc_first_upcrossing_avx
+        fc_nodes_make=fc_nodes_make_avx fc_relaxation_panel=fc_relaxation_panel_avx fc_first_upcrossing=fc_first_upcrossing_avx
         fc_body_panel=fc_body_panel_avx fc_body_rates=fc_body_rates_avx fc_body_panel_rates=fc_body_panel_rates_avx)
     target_link_libraries(${core}_avx PRIVATE fc_options)
     target_compile_definitions(${core} PUBLIC FC_WITH_AVX)

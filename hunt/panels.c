@@ -14,10 +14,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "friction_contact.h"
+#include "contact/friction_contact.h"
 #include "sequence.h"
-#include "solver/integrator.h"
-#include "solver/march.h"
+#include "solver/integrate/integrator.h"
+#include "solver/integrate/march.h"
 #include "trial.h"
 
 static bool lists = false; // while a step is taken

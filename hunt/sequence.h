@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "friction_contact.h"
+#include "contact/friction_contact.h"
 #include "reference.h"
 
 enum { MAX_STEPS = 10, SEQUENCE_TEXT = 8000 };

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/settled_force.h"
 #include "scenes.h"
-#include "settled_force.h"
 
 const char* const GRADE_NAMES[GRADES] = {"F_t",       "F_y",   "F_t_mean", "F_y_mean", "F_t_start",
                                          "F_y_start", "W_f",   "Q_f",      "body.v",   "body.x",

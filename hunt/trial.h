@@ -20,7 +20,7 @@
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 
-#include "friction_contact.h"
+#include "contact/friction_contact.h"
 #include "reference.h"
 #include "sequence.h"
 

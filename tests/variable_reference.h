@@ -4,9 +4,9 @@
 
 #include <stddef.h>
 
+#include "contact/friction_contact.h"
 #include "fmi2/variables.h"
 #include "fmi2TypesPlatform.h"
-#include "friction_contact.h"
 
 static inline fmi2ValueReference reference_of(size_t offset) {
     fmi2ValueReference vr = 0;

@@ -6,12 +6,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/settled_force.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
 #include "model/extremes.h"
 #include "model/regime.h"
-#include "settled_force.h"
 
 // The variable of the reference if it has the causality; otherwise NULL, after logging the reason.
 static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi2ValueReference vr,

@@ -4,10 +4,10 @@
 
 #include <stdbool.h>
 
+#include "contact/friction_contact.h"
+#include "contact/ode.h"
 #include "fmi2/call_table.h"
 #include "fmi2Functions.h"
-#include "friction_contact.h"
-#include "ode.h"
 
 // The state of a run besides the contact; plain data, part of a saved state.
 typedef struct {

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "contact/settled_force.h"
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/plausibility.h"
-#include "settled_force.h"
 
 static const char* const TYPE_NAME[] = {
     [FC_TYPE_REAL] = "Real",

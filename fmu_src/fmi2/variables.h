@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "friction_contact.h"
+#include "contact/friction_contact.h"
 
 typedef enum {
     FC_TYPE_REAL,

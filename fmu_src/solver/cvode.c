@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 #include "model/extremes.h"
-#include "solver/body.h"
+#include "solver/body/body.h"
 
 // FC_NO_CVODE leaves it out of any build: SUNDIALS takes memory from the heap, which some targets do not have.
 #if defined(FC_WITH_SUNDIALS) && !defined(FC_NO_CVODE)
@@ -27,7 +27,7 @@
 #include "model/constants.h"
 #include "model/regime.h"
 #include "model/root.h"
-#include "solver/segments.h"
+#include "solver/periods/segments.h"
 
 // Each is chosen empirically: half of it costs steps, twice of it doubles the error that passes
 // (tests/solver/test_cvode.py). The part of solver.tolerance that bounds the local error of one step, so that the

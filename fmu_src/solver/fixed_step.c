@@ -11,7 +11,7 @@
 
 #include "model/extremes.h"
 #include "solver/method.h"
-#include "solver/segments.h"
+#include "solver/periods/segments.h"
 
 // What a step takes of FC_MAX_EVALUATIONS (solver.h), at most; with a bound, at which each step makes a scene. Chosen
 // empirically, for the same time.

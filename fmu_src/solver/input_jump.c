@@ -7,7 +7,7 @@
 #include "model/extremes.h"
 #include "model/plane.h"
 #include "model/root.h"
-#include "solver/panel_tables.h"
+#include "solver/panel/panel_tables.h"
 
 FcPast fc_past(const FcScene* scene) {
     if (fc_scene_is_separated(scene)) {

@@ -4,7 +4,7 @@
 
 #include "model/regime.h"
 #include "solver/constant_step.h"
-#include "solver/periods.h"
+#include "solver/periods/periods.h"
 
 // By cvode or a fixed step, segment by segment.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,

@@ -1,5 +1,5 @@
 // The first rise of a polynomial that is known at the points of a panel: closed forms, and dense samples of random ones.
-#include "solver/dense_output.h"
+#include "solver/integrate/dense_output.h"
 
 #include "check.h"
 #include "random.h"

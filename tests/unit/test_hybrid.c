@@ -1,5 +1,5 @@
 // What model exchange keeps of a contact: how fast the inputs are seen to move.
-#include "ode.h"
+#include "contact/ode.h"
 
 #include <string.h>
 

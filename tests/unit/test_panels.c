@@ -2,9 +2,9 @@
 #include <float.h>
 
 #include "check.h"
-#include "solver/dense_output.h"
-#include "solver/panel.h"
-#include "solver/tuning.h"
+#include "solver/integrate/dense_output.h"
+#include "solver/integrate/tuning.h"
+#include "solver/panel/panel.h"
 #include "table_1.h"
 
 static const double F_C = 55.0; // N
@@ -36,7 +36,7 @@ static FcPanel panel_over(const Line* line, double start, double end, double len
     FcNodes nodes;
     FcPanel panel;
     fc_nodes_make(&line->plane, &part, u, fc_time_map_u(&in, end) - u, &nodes);
-    fc_free_panel(&line->plane, &nodes, from, &panel);
+    fc_relaxation_panel(&line->plane, &nodes, from, &panel);
     return panel;
 }
 
@@ -132,9 +132,9 @@ static void processors_compute_the_same_numbers(void) {
     const FcPanelStart from = {
         .delta = {1e-9, 0.0}, .speed = 0.02, .push = 0.02, .for_any = true, .scale = 1e-8};
     fc_nodes_make(&line.plane, &part, 0.1, 1.3, &nodes[0]);
-    fc_free_panel(&line.plane, &nodes[0], &from, &panels[0]);
+    fc_relaxation_panel(&line.plane, &nodes[0], &from, &panels[0]);
     FC_FASTEST(fc_nodes_make)(&line.plane, &part, 0.1, 1.3, &nodes[1]);
-    FC_FASTEST(fc_free_panel)(&line.plane, &nodes[1], &from, &panels[1]);
+    FC_FASTEST(fc_relaxation_panel)(&line.plane, &nodes[1], &from, &panels[1]);
     CHECK(memcmp(&nodes[0], &nodes[1], sizeof nodes[0]) == 0);
     CHECK(memcmp(&panels[0], &panels[1], sizeof panels[0]) == 0);
     const double* f = nodes[0].moved;

@@ -1,6 +1,6 @@
 // The parts of an interval: they cover it, along a line V keeps its sign in each, and in the plane every minimum of |V|
 // is an end of one, as dense samples find them.
-#include "solver/time_map.h"
+#include "solver/integrate/time_map.h"
 
 #include "check.h"
 #include "random.h"

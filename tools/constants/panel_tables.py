@@ -1,4 +1,4 @@
-"""Writes the tables of the solver's panels: fmu_src/solver/panel_tables.h.
+"""Writes the tables of the solver's panels: fmu_src/solver/panel/panel_tables.h.
 
     .venv/bin/python -m tools.constants.panel_tables
 
@@ -17,7 +17,7 @@ from tools.project import ROOT
 mp.dps = 60
 STAGES, SAMPLES = 9, 32
 TAIL = (8, 7, 6, 5, 2, 1)  # degrees by which the error of a panel is estimated
-HEADER = ROOT / "fmu_src" / "solver" / "panel_tables.h"
+HEADER = ROOT / "fmu_src" / "solver" / "panel" / "panel_tables.h"
 
 
 def radau_nodes(n: int) -> list[mpf]:
@@ -76,10 +76,10 @@ def tables() -> str:
     samples = list(zip(*(values_at(points, mpf(k) / SAMPLES) for k in range(1, SAMPLES + 1)), strict=True))
     return f"""// Made by tools.constants.panel_tables, which describes the entries.
 // clang-format off
-#ifndef FC_SOLVER_PANEL_TABLES_H
-#define FC_SOLVER_PANEL_TABLES_H
+#ifndef FC_SOLVER_PANEL_PANEL_TABLES_H
+#define FC_SOLVER_PANEL_PANEL_TABLES_H
 
-#include "solver/arithmetic.h"
+#include "solver/panel/arithmetic.h"
 
 // The number of stages. The points of a panel are its stages, and then its start.
 enum {{ FC_STAGES = {STAGES}, FC_POINTS = FC_STAGES + 1, FC_SAMPLES = {SAMPLES} }};
@@ -107,7 +107,7 @@ static const FcRadauRule FC_RADAU = {{
     {rows([list(of_point) for of_point in samples])},
 }};
 
-#endif  // FC_SOLVER_PANEL_TABLES_H
+#endif  // FC_SOLVER_PANEL_PANEL_TABLES_H
 """  # noqa: E501
 
 

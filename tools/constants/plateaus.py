@@ -1,4 +1,4 @@
-"""The plateaus of the constants of fmu_src/solver/tuning.h: evaluations and errors at half and twice.
+"""The plateaus of the constants of fmu_src/solver/integrate/tuning.h: evaluations and errors at half and twice.
 
     .venv/bin/python -m tools.constants.plateaus            all, a quarter of an hour
     .venv/bin/python -m tools.constants.plateaus FC_SAFETY  these
@@ -30,7 +30,7 @@ from tools.bench.cases import Case, cases, expected
 from tools.bench.driver import Bench, open_bench
 from tools.project import ROOT
 
-TUNING = Path("solver") / "tuning.h"
+TUNING = Path("solver") / "integrate" / "tuning.h"
 CONSTANT = re.compile(r"static const double (FC_\w+) = ([0-9.e-]+);")
 SETTINGS: Mapping[str, Mapping[str, Value]] = {
     "Dahl": {},

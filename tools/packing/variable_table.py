@@ -16,7 +16,7 @@ def table(description: ModelDescription) -> str:
     lines = [
         "// Generated from modelDescription.xml and frictioncontact/plausibility.py; edit those.",
         '#include "fmi2/variables.h"',
-        '#include "friction_contact.h"',
+        '#include "contact/friction_contact.h"',
         "",
         "#include <float.h>",
         "",

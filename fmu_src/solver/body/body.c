@@ -1,0 +1,118 @@
+#include "solver/body/body.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "model/constants.h"
+#include "model/extremes.h"
+#include "model/regime.h"
+#include "model/root.h"
+#include "solver/body/body_march.h"
+#include "solver/periods/segments.h"
+
+double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body) {
+    assert(body->m > 0.0);
+    if (regime == FC_FREE || !fc_has_static_friction(scene->friction) || scene->friction->sigma_1 == 0.0) {
+        return body->m;
+    }
+    const double change = 1.0 + fabs(scene->drive.V.rate); // F_t is linear in the rate of w
+    FcScene faster = *scene;
+    faster.drive.V.rate += change;
+    const double F_t = fc_motion(scene, regime, bristle).force.x;
+    return body->m + (fc_motion(&faster, regime, bristle).force.x - F_t) / change;
+}
+
+double fc_body_acceleration(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body,
+                            double F) {
+    const double inertia = fc_body_inertia(scene, regime, bristle, body);
+    return (F - fc_motion(scene, regime, bristle).force.x) / fc_max(inertia, FC_MIN_INERTIA * body->m);
+}
+
+FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle) {
+    FcScene seen = *scene;
+    seen.drive.V.value += body->v;
+    if (seen.friction->model != FC_COULOMB) {
+        const bool slips = bristle.slips != 0;
+        const FcRegime regime = slips ? (FcRegime)fc_side(bristle) : fc_regime(&seen, bristle);
+        seen.drive.V.rate += fc_body_acceleration(&seen, regime, bristle, body, body->F.value);
+    }
+    return seen;
+}
+
+// A bristle that drops from `first` [m], and by its damper moves the mass: w changes by per_delta [1/s] over the drop.
+typedef struct {
+    FcScene scene;
+    double V, first, per_delta;
+} Drop;
+
+// The kinetic bound less the deflection [m], for fc_root_between.
+static double inside_bound(void* context, double size) {
+    Drop* of = context;
+    of->scene.drive.V.value = of->V + of->per_delta * (of->first - size);
+    const FcCoefficients at = fc_scene_coefficients(&of->scene, 0.0);
+    return at.limit / at.sigma - size;
+}
+
+void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* now) {
+    enum { SAMPLES = 64 }; // half of them pass over a smaller jump
+    assert(m > 0.0 && sigma_1 >= 0.0 && fc_has_static_friction(scene->friction));
+    const double side = fc_side(fc_bristle_of(now));
+    Drop of = {*scene, scene->drive.V.value, fabs(now->delta), side * sigma_1 / m};
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double fall =
+        of.first - at.limit / fc_stribeck(scene->friction, at.V) / at.sigma; // to that of a fast slip
+    double outside = 0.0;
+    double evaluations = 0.0;
+    for (int k = 0; k <= SAMPLES; k++) {
+        const double size = of.first - fall * k / SAMPLES;
+        const double value = inside_bound(&of, size);
+        if (value < 0.0) {
+            outside = size;
+        } else if (outside != 0.0) {
+            const double at_outside = inside_bound(&of, outside);
+            const double end =
+                fc_root_between(inside_bound, &of, size, value, outside, at_outside, 0.0, &evaluations);
+            const double w = fc_drive_V(&scene->drive, 0.0) + 0.5 * of.per_delta * (of.first - end);
+            const double damping = -side * sigma_1 * (of.first - end) * w;
+            now->work += damping;
+            now->heat += damping + 0.5 * at.sigma * (of.first - end) * (of.first + end);
+            now->delta = side * end;
+            now->slips = (int)side;
+            return;
+        }
+    }
+}
+
+bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const char* reason,
+                    FcMessage* message) {
+    const double omega = sqrt(fc_scene_largest_stiffness(scene, h) / body->m);
+    return fc_message_set(
+        message,
+        "body.m = %.9g kg: the step of %.5g s is refused: %s. The stuck mass rings at %.4g kHz, "
+        "%.4g cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = "
+        "Coulomb",
+        body->m, h, reason, 1e-3 * omega / FC_TWO_PI, omega * h / FC_TWO_PI, 0.4 * body->m * omega);
+}
+
+bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
+                  FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && body->m > 0.0 && options->tolerance > 0.0 && !fc_is_planar(scene, from));
+    fc_result_start(result, from, 0.0);
+    FcSegments segments;
+    fc_segments_start(&segments, scene, h);
+    while (fc_next_segment(&segments)) {
+        const bool is_separated = fc_scene_is_separated(segments.scene);
+        if (is_separated) {
+            fc_open_contact_step(result);
+        }
+        const bool is_rigid = is_separated || scene->friction->model == FC_COULOMB;
+        const bool is_done =
+            is_rigid ? fc_body_rigid_step(segments.scene, options, segments.h, body, result, message)
+            : cvode  ? fc_body_cvode_step(cvode, segments.scene, options, segments.h, body, result, message)
+                     : fc_body_march_step(segments.scene, options, segments.h, body, result, message);
+        if (!is_done) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,113 @@
+#include "solver/periods/multirevolution.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "model/extremes.h"
+#include "solver/integrate/march.h"
+#include "solver/periods/period_interpolation.h"
+#include "solver/periods/segments.h"
+
+// The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
+// one by one.
+static const double FEWEST = 12.0;
+// The number of periods in which a bristle that meets its bound forgets its start: in the plane its angle; on
+// a line, if it slips for no time, all of it. Chosen empirically: fewer are refused more often, more cost
+// more. Each sample costs two times as many, so fewer periods than FEWEST_OF_SLIPS are computed one by one.
+enum { WARM_UP = 3 };
+static const double FEWEST_OF_SLIPS = 60.0;
+
+// One period, or the part [from, to] of it.
+static void take_part(const FcScene* scene, const FcSolverOptions* options, double k, double from, double to,
+                      FcStepResult* total) {
+    FcScene part = fc_scene_later(scene, k / scene->drive.vibration.f);
+    if (from > 0.0) {
+        part = fc_scene_from(&part, from);
+    }
+    fc_march_segments(&part, options, to - from, total);
+}
+
+// The number of periods from k to the next kink: at |V| = V_1, beyond which V begins or ends to reverse; at the next end
+// of a Stribeck peak beside it, which few points far from it do not see; and where the surfaces reverse between two periods,
+// so that the period before has one reversal more than the one after, or less.
+static double to_kink(const FcScene* scene, double k) {
+    const FcDrive* drive = &scene->drive;
+    const double V_1 = drive->vibration.V_1;
+    const double peak = fc_has_stribeck_curve(scene->friction) ? FC_END_OF_PEAK * scene->friction->V_S : 0.0;
+    const double between = -V_1 * fc_drive_phase(drive, 0.0).cosine;
+    const double kinks[] = {V_1, V_1 - peak, V_1 + peak, -V_1, peak - V_1, -V_1 - peak, between};
+    double nearest = HUGE_VAL;
+    for (size_t i = 0; i < sizeof kinks / sizeof *kinks && drive->V.rate != 0.0; i++) {
+        const double at = (kinks[i] - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
+        if (at > k) {
+            nearest = fc_min(nearest, floor(at - k));
+        }
+    }
+    return nearest;
+}
+
+double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods,
+                          FcStepResult* total) {
+    const double period = 1.0 / scene->drive.vibration.f;
+    const bool is_planar = fc_is_planar(scene, fc_bristle_of(total));
+    const bool is_bounded = fc_march_may_meet(scene);
+    double longest = periods;
+    double tries_at = 0.0;
+    double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
+    double k = 0.0;
+    while (k < periods && total->evaluations <= FC_MAX_EVALUATIONS) {
+        bool slipped = false;
+        if (is_bounded) { // the first period says whether it slips
+            total->meetings = total->slip_side = 0;
+            take_part(scene, options, k, 0.0, period, total);
+            slipped = total->meetings > 0;
+            k += 1.0;
+        }
+        const double left = fc_min(longest, fc_min(periods - k, to_kink(scene, k)));
+        // On a line periods begin at the bound, if the bristle slips along it for any time.
+        const bool is_one_dimensional = slipped && !is_planar && total->slip_side != 0;
+        const bool forgets = slipped && !is_one_dimensional;
+        const double phase = is_one_dimensional ? total->slip_time : 0.0;
+        const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
+        const double count = closes ? left - 1.0 : left;
+        const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
+        const FcBlock block = {.scene = scene,
+                               .is_planar = is_planar,
+                               .is_bounded = is_bounded,
+                               .options = options,
+                               .first = k,
+                               .count = floor(count),
+                               .phase = phase,
+                               .side = is_one_dimensional ? total->slip_side : 0,
+                               .warm_up = forgets ? WARM_UP : 0};
+        bool taken = false;
+        if (k >= tries_at && block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
+            FcStepResult before = *total;
+            total->meetings = 0;
+            if (phase > 0.0) {
+                take_part(scene, options, k, 0.0, phase, total);
+            }
+            taken = (is_one_dimensional || total->meetings == 0) && fc_interpolate_periods(&block, total);
+            if (taken && closes) {
+                take_part(scene, options, k + block.count, phase, period, total);
+            } else if (!taken) {
+                before.evaluations = total->evaluations;
+                *total = before;
+            }
+            longest = taken ? 2.0 * left : floor(0.5 * left);
+            if (longest < fewest + 1.0) { // of one more a block on a line would have too few
+                longest = 2.0 * fewest + 2.0;
+                tries_at = k + alone;
+                alone *= 2.0;
+            }
+        }
+        if (taken) {
+            alone = FEWEST;
+            k += block.count + (closes ? 1.0 : 0.0);
+        } else if (!is_bounded) {
+            take_part(scene, options, k, 0.0, period, total);
+            k += 1.0;
+        }
+    }
+    return k;
+}
