@@ -6,7 +6,7 @@
 // breaks away and drops to the kinetic bound. A contact opens and closes at events, too. All events have a
 // little hysteresis, so that the rounding of an event's time starts no second event. The motion between two
 // events depends on time, states, inputs and regime alone. Inputs that jump at an event do so as between two
-// steps of co-simulation (solver/jump.h).
+// steps of co-simulation (solver/input_jump.h).
 //
 // The push also depends on the speed at which the inputs move the bound. That speed is estimated from the
 // inputs now and at the end of the integrator's last step. An error of it enters the moment of sticking, and
