@@ -45,7 +45,7 @@ if(FC_FUZZ)
     # ways it goes, and not what it compares: that took most of an execution, and there are no magic values to find.
     # What the code takes for granted is asserted.
     target_compile_options(fc_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp
-                           -DFC_MOST_EVALUATIONS=2e3 -UNDEBUG)
+                           -DFC_MAX_EVALUATIONS=2e3 -UNDEBUG)
 endif()
 if(FC_COVERAGE)
     # A branch counts once, and not once for every place that its function is inlined at.

@@ -178,8 +178,8 @@ static FcVector reached_by(const FcFrictionContact* contact, const FcVariableInf
 }
 
 // The scene that the outputs see: held in model exchange.
-static FcScene scene_of(FcFrictionContact* contact, bool hybrid) {
-    return hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
+static FcScene scene_of(FcFrictionContact* contact, bool is_ode) {
+    return is_ode ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
 }
 
 // The part for a difference of order 4 over 4 changes: its error is the fourth power of the part, and rounding over
@@ -188,14 +188,14 @@ static const double MOVED_PART_OF_ORDER_4 = 5e-4;
 
 // The derivative by one variable of the rate of the bound along which the bristle slips. The variable rises, since
 // it may be at its minimum.
-static double bound_rate_by(const FcFrictionContact* contact, bool hybrid, int slips,
+static double bound_rate_by(const FcFrictionContact* contact, bool is_ode, int slips,
                             const FcVariableInfo* info) {
     static const double weight[] = {-25.0, 48.0, -36.0, 16.0, -3.0};
     const double change = small_change(contact, info, MOVED_PART_OF_ORDER_4);
     double sum = 0.0;
     for (int k = 0; k < 5; k++) {
         FcFrictionContact moved = moved_by(contact, info, k * change);
-        const FcScene scene = scene_of(&moved, hybrid);
+        const FcScene scene = scene_of(&moved, is_ode);
         FcPlane plane;
         fc_plane_make(&plane, &scene);
         sum += weight[k] * fc_bound(&plane, slips, 0.0).rate;
@@ -242,14 +242,14 @@ static FcDirection direction_of(const FcFrictionContact* contact, const FcVariab
 // F_t_settled and F_y_settled stay 0. So do those of outputs that do not depend on the present values.
 static FcVariables derivatives_along(FcInstance* instance, const FcVariables* along) {
     FcFrictionContact* contact = &instance->contact;
-    const bool hybrid = fc_instance_is_ode(instance);
-    const FcScene scene = scene_of(contact, hybrid);
+    const bool is_ode = fc_instance_is_ode(instance);
+    const FcScene scene = scene_of(contact, is_ode);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
+    const FcBristle reached = is_ode ? bristle : fc_friction_contact_reached(contact, &scene);
     FcDirection direction = direction_of(contact, along);
-    const FcRegime regime = hybrid ? (FcRegime)contact->state.ode.regime : fc_regime(&scene, reached);
+    const FcRegime regime = is_ode ? (FcRegime)contact->state.ode.regime : fc_regime(&scene, reached);
     const bool has_jumped = reached.delta != bristle.delta || reached.delta_y != bristle.delta_y;
-    const bool is_led = has_jumped || (regime != FC_FREE && !hybrid); // by its bound, as inputs move that
+    const bool is_led = has_jumped || (regime != FC_FREE && !is_ode); // by its bound, as inputs move that
     if (is_led) { // the present deflection counts by its direction alone
         const double shrinks = fc_size(reached) / fc_size(bristle);
         const FcVector n = fc_direction(fc_delta(bristle), (FcVector){1.0, 0.0});
@@ -266,7 +266,7 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
             direction.delta_y += change * moves.y;
         }
         if (change != 0.0 && regime != FC_FREE) {
-            direction.bound_rate += change * bound_rate_by(contact, hybrid, (int)regime, info);
+            direction.bound_rate += change * bound_rate_by(contact, is_ode, (int)regime, info);
         }
     }
     FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
@@ -276,7 +276,7 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
     const FcContactLogSlope by = fc_contact_along(&scene, &direction);
     // Before the first step F_t_mean is F_t, and F_y_mean F_y.
-    const bool mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE;
+    const bool mean_is_force = is_ode || instance->experiment.mode == FC_INITIALIZATION_MODE;
     return (FcVariables){
         .F_t = motion.force.x,
         .F_y = motion.force.y,

@@ -153,17 +153,17 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
         return fmi2Error;
     }
     FcMessage message;
-    const bool hybrid = instance->experiment.interface == FC_MODEL_EXCHANGE;
+    const bool is_ode = instance->experiment.interface == FC_MODEL_EXCHANGE;
     fc_friction_contact_free(&instance->contact);
-    if ((hybrid && !fc_ode_allows(&instance->contact, &message)) ||
+    if ((is_ode && !fc_ode_allows(&instance->contact, &message)) ||
         !fc_friction_contact_initialize(&instance->contact, instance->experiment.start_time, &message)) {
         return fc_refuse(instance, FC_CALL_EXIT_INITIALIZATION_MODE, "%s", message.text);
     }
-    if (hybrid) {
+    if (is_ode) {
         fc_ode_start(&instance->contact);
     }
-    instance->experiment.mode = hybrid ? FC_EVENT_MODE : FC_STEP_COMPLETE;
-    instance->experiment.outputs_stale = hybrid;
+    instance->experiment.mode = is_ode ? FC_EVENT_MODE : FC_STEP_COMPLETE;
+    instance->experiment.outputs_stale = is_ode;
     fc_log_plausibility(instance);
     fc_log(instance, FC_CALL_EXIT_INITIALIZATION_MODE, fmi2OK, FC_LOG_EVENTS, "initialized at %s",
            fc_quantity_text(instance->experiment.start_time, "s").text);

@@ -135,10 +135,10 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
 
 // FcVariables alone has padding, and impossible_part checks each member of the others.
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
-                                              2 * sizeof(int) + sizeof(FcPast) + sizeof(FcHybrid),
+                                              2 * sizeof(int) + sizeof(FcPast) + sizeof(FcOdeState),
                "impossible_part must check a new member of FcFrictionState; padding needs a name");
-_Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
-               "impossible_part must check a new member of FcHybrid; padding needs a name");
+_Static_assert(sizeof(FcOdeState) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
+               "impossible_part must check a new member of FcOdeState; padding needs a name");
 _Static_assert(sizeof(FcExperiment) == 6 * sizeof(int) + 2 * sizeof(double),
                "impossible_part must check a new member of FcExperiment; padding needs a name");
 _Static_assert(sizeof(FcSavedState) ==
@@ -244,7 +244,7 @@ static bool is_flag(int value) { return value == 0 || value == 1; }
 
 // Only a bounded bristle slips.
 static bool regime_is_sound(const FcFrictionState* state) {
-    const int regime = state->hybrid.regime;
+    const int regime = state->ode.regime;
     const bool slips = regime == FC_SLIPS_FORWARD || regime == FC_SLIPS_BACK;
     return regime == FC_FREE || (slips && fc_is_bounded(&state->variables.friction));
 }
@@ -261,7 +261,7 @@ static bool mode_is_sound(const FcExperiment* experiment) {
 // The first part of the state with a value that no call leaves behind; NULL if there is none.
 static const char* impossible_part(const FcSavedState* saved) {
     const FcFrictionState* friction = &saved->friction;
-    const FcHybrid* hybrid = &friction->hybrid;
+    const FcOdeState* ode = &friction->ode;
     const FcExperiment* experiment = &saved->experiment;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
@@ -272,10 +272,10 @@ static const char* impossible_part(const FcSavedState* saved) {
     if (!are_finite(&friction->time, &friction->next_rate_set) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
-    if (!are_finite(&friction->past, hybrid) || friction->slips < -1 || friction->slips > 1) {
+    if (!are_finite(&friction->past, ode) || friction->slips < -1 || friction->slips > 1) {
         return "what the last step left";
     }
-    if (!are_finite(&hybrid->seen_time, hybrid + 1) || !is_flag(hybrid->changed) ||
+    if (!are_finite(&ode->seen_time, ode + 1) || !is_flag(ode->changed) ||
         !regime_is_sound(friction)) {
         return "what model exchange keeps";
     }

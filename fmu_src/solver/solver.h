@@ -1,5 +1,16 @@
 // The task of every solver method: take the deflection over one communication step, within a limited amount
 // of work.
+//
+// A step is divided into nested spans of time, from long to short:
+//
+//     step       of communication, by a method                                        method.h
+//     block      of periods whose maps are interpolated (multirevolution)             periods/period_interpolation.h
+//     cycle      of periods that repeats itself                                       periods/periods.h
+//     period     of the vibration                                                     periods/periods.h
+//     segment    between openings of the contact, or factors of the load              periods/segments.h
+//     interval   a segment of one period, or of less than two: the domain of a map    interval.h
+//     part       of an interval, with one change of variable                          integrate/time_map.h
+//     panel      of a part: ten points, one Radau step                                panel/panel.h
 #ifndef FC_SOLVER_SOLVER_H
 #define FC_SOLVER_SOLVER_H
 

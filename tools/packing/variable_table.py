@@ -8,7 +8,7 @@ from pathlib import Path
 
 from fmpy.model_description import ModelDescription, ScalarVariable
 
-from frictioncontact.doubts import LIKELY, USED
+from frictioncontact.plausibility import LIKELY, USED
 from tools.packing import model_description
 
 
