@@ -14,10 +14,10 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 from frictioncontact import command as shared
-from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu, Value, opened
+from frictioncontact.plausibility import warn_of
 from frictioncontact.values import assignments, numbers_of
 
 if TYPE_CHECKING:

@@ -13,11 +13,11 @@ import numpy as np
 import pandas as pd
 
 from frictioncontact import command as shared
-from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError, warn
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, Value, opened
 from frictioncontact.fmu import run as run_steps
+from frictioncontact.plausibility import warn_of
 from frictioncontact.tables import OWN, POSITION, SUFFIX, TIME
 from frictioncontact.tables import table as read
 from frictioncontact.values import assignments, real

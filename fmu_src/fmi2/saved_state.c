@@ -275,8 +275,7 @@ static const char* impossible_part(const FcSavedState* saved) {
     if (!are_finite(&friction->past, ode) || friction->slips < -1 || friction->slips > 1) {
         return "what the last step left";
     }
-    if (!are_finite(&ode->seen_time, ode + 1) || !is_flag(ode->changed) ||
-        !regime_is_sound(friction)) {
+    if (!are_finite(&ode->seen_time, ode + 1) || !is_flag(ode->changed) || !regime_is_sound(friction)) {
         return "what model exchange keeps";
     }
     if (!are_finite(&experiment->start_time, experiment + 1) || !is_flag(experiment->outputs_stale) ||

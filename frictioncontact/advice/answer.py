@@ -13,10 +13,10 @@ import numpy as np
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
 from frictioncontact.advice.stuck_mass import INSIDE, MASTERS, Master, coupling
-from frictioncontact.plausibility import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves
+from frictioncontact.plausibility import WITH_STATIC_FRICTION
 from frictioncontact.values import pairs, real
 
 if TYPE_CHECKING:

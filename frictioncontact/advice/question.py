@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from frictioncontact.advice.stuck_mass import between
-from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
+from frictioncontact.plausibility import warn_of
 from frictioncontact.simulation import Samples, samples
 from frictioncontact.values import pairs, real
 

@@ -22,11 +22,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import resources
-from .plausibility import warn_of
 from ..errors import BatchError, UserError, shown
 from ..fmu import opened
 from ..tables import in_SI
 from ..values import Variables, check_whole, numbers_of, pairs, real, row_of
+from .plausibility import warn_of
 from .run import Batch, Progress
 from .runner import STATISTICS, loaded, runner
 
@@ -37,8 +37,8 @@ Statistic = Literal["end", "change", "mean", "min", "max", "samples"]
 Output = str | tuple[str, Statistic]
 Outputs = Sequence[str] | Mapping[str, Output]
 Unit = Literal["period", "s"]
-MOST_SAMPLES = 1_000_000
-MOST_THREADS = 1024
+MAX_SAMPLES = 1_000_000
+MAX_THREADS = 1024
 
 
 def simulate_many(
@@ -102,12 +102,12 @@ def simulate_many(
     try:
         library, contact = runner(resources.batch_host()), opened(fmu)
         known, lengths = contact.known, None if steps is None else _row(_lengths(steps, "steps"), "steps")
-        samples = check_whole(samples if lengths is None else len(lengths), MOST_SAMPLES, "samples =")
+        samples = check_whole(samples if lengths is None else len(lengths), MAX_SAMPLES, "samples =")
         if unit not in ("period", "s"):
             raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
         if errors not in ("raise", "keep"):
             raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
-        workers = check_whole(processors() if threads is None else threads, MOST_THREADS, "threads =")
+        workers = check_whole(processors() if threads is None else threads, MAX_THREADS, "threads =")
         named = in_SI(_named(values), known.units(), "column")
         if settled or (settle is None and unit == "period" and "initialState" not in named):
             if "initialState" in named:

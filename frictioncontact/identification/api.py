@@ -13,7 +13,6 @@ import numpy as np
 from rich.console import Console
 
 from frictioncontact.command import TABLE
-from frictioncontact.plausibility import unused, warn_of
 from frictioncontact.errors import UserError, did_you_mean, quiet
 from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
@@ -30,6 +29,7 @@ from frictioncontact.identification.faults import hidden, remedies, rivals, shap
 from frictioncontact.identification.fit import Fit, Tell, search, silent, with_profiles
 from frictioncontact.identification.judge import judge
 from frictioncontact.identification.show import show
+from frictioncontact.plausibility import unused, warn_of
 from frictioncontact.tables import accepted
 from frictioncontact.values import LARGEST, Variables, number, pairs, real
 

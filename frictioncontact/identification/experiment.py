@@ -19,10 +19,10 @@ import numpy as np
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.batch.many import Outputs
-from frictioncontact.plausibility import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.identification.data import Measurements, Series
+from frictioncontact.plausibility import WITH_STATIC_FRICTION
 from frictioncontact.simulation import moving
 from frictioncontact.tables import accepted
 from frictioncontact.values import LARGEST

@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from frictioncontact.plausibility import BRISTLES, WITH_STATIC_FRICTION, unused
 from frictioncontact.errors import FrictionError
 from frictioncontact.identification.data import Measurements, Series
 from frictioncontact.identification.experiment import V_1, Experiment, parameter
 from frictioncontact.identification.fit import Fit, search
 from frictioncontact.identification.judge import CHANCE, misfits, visible
+from frictioncontact.plausibility import BRISTLES, WITH_STATIC_FRICTION, unused
 
 LAW, STRIBECK = "friction.model", ("friction.staticRatio", "friction.V_S")
 MOST = 0.25  # of the sum of squares, left of a misfit that is mostly explained
 TENTH = 0.1  # of the force: a fault that a fit should show
 STARTS = 3  # of each remedy
 SHOWS = 3.0  # standard deviations of the scatter by which it does
-MOST_RATIO = 3.0  # of static friction that is tried
+MAX_RATIO = 3.0  # of static friction that is tried
 MUCH = 15.0  # of the sum of squares over the variance of a row: by scatter 1 of 1e4 fits is worse by that
 ALIKE = 4.0  # the same of a fit inside of the 95 % interval of one parameter
 
@@ -190,7 +190,7 @@ def _with_stribeck(experiment: Experiment) -> list[Remedy]:
     V = V[V > 0.0]
     if not len(V):
         return []
-    ranges = ("friction.V_S", (V.min(), V.max())), ("friction.staticRatio", (1.0, MOST_RATIO))
+    ranges = ("friction.V_S", (V.min(), V.max())), ("friction.staticRatio", (1.0, MAX_RATIO))
     more = [parameter(experiment.fmu, name, None, search, {}) for name, search in ranges]
     return [
         (

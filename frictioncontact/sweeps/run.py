@@ -12,22 +12,22 @@ from numbers import Integral
 from pathlib import Path
 
 from frictioncontact import resources
-from frictioncontact.batch.many import MOST_SAMPLES, processors, shown_progress
+from frictioncontact.batch.many import MAX_SAMPLES, processors, shown_progress
 from frictioncontact.command import add_fmu, command_line, finish
-from frictioncontact.plausibility import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
+from frictioncontact.plausibility import warn_of
 from frictioncontact.sweeps import workers as at
 from frictioncontact.sweeps.folder import Folder
 from frictioncontact.sweeps.scenarios import Scenarios, Vary, drawn, from_csv, grid
 from frictioncontact.sweeps.workers import Group, Job
 from frictioncontact.values import Value, Variables, assignments, check_whole, pairs, path_of
 
-MOST_WORKERS = 1000
-MOST_GROUP = 1_000_000  # scenarios; a worker holds its group's rows, some 300 bytes each
+MAX_WORKERS = 1000
+MAX_GROUP = 1_000_000  # scenarios; a worker holds its group's rows, some 300 bytes each
 GROUP = 250_000  # scenarios of a group, at most; a small sweep has GROUPS of them
 GROUPS = 64
-MOST_FILES = 100_000
+MAX_FILES = 100_000
 
 
 @dataclass(frozen=True)
@@ -109,8 +109,8 @@ def sweep(
     fmu = resources.fmu() if fmu is None else path_of(fmu, "fmu")
     output = path_of(output, "output")
     csv = None if csv is None else path_of(csv, "csv")
-    check_whole(samples, MOST_SAMPLES, "samples")
-    check_whole(1 if workers is None else workers, MOST_WORKERS, "workers")
+    check_whole(samples, MAX_SAMPLES, "samples")
+    check_whole(1 if workers is None else workers, MAX_WORKERS, "workers")
     content = _content(f"fmu {fmu}", fmu)
     variables = opened(fmu).known
     vary = {name: _listed(name, values) for name, values in pairs(vary, "vary").items()}
@@ -123,9 +123,9 @@ def sweep(
     warn_of(variables, {**scenarios.seen, **fixed}, is_over_period=True)
     if group is None:
         group = min(GROUP, -(-count // GROUPS))
-    check_whole(group, MOST_GROUP, "group")
-    if count > MOST_FILES * group:
-        raise UserError(f"group {group}: {count} scenarios would be more than {MOST_FILES} files")
+    check_whole(group, MAX_GROUP, "group")
+    if count > MAX_FILES * group:
+        raise UserError(f"group {group}: {count} scenarios would be more than {MAX_FILES} files")
     record = {
         "fmu": hashlib.sha256(content).hexdigest(),
         "vary": vary, "random": random, "seed": seed,

@@ -17,8 +17,8 @@ from frictioncontact.errors import UserError, shown
 from frictioncontact.tables import table
 from frictioncontact.values import Value, Variables, check_whole, number
 
-MOST_SCENARIOS = 1_000_000_000
-MOST_VALUES = 10_000_000  # of one variable of a grid, which are held
+MAX_SCENARIOS = 1_000_000_000
+MAX_VALUES = 10_000_000  # of one variable of a grid, which are held
 
 Rows = Callable[[int, int], dict[str, np.ndarray]]  # the columns of scenarios first to stop - 1
 Vary = Mapping[str, str | Sequence[Value]]
@@ -59,8 +59,8 @@ def grid(variables: Variables, vary: Vary) -> Scenarios:
         values, count = _values(variables, name, given, "low:high:count")
         axes[name] = values.spaced(_count(count, name)) if isinstance(values, Range) else values
     count = math.prod(map(len, axes.values()))
-    if count > MOST_SCENARIOS:
-        raise UserError(f"the grid has {count} scenarios; the most that a sweep runs is {MOST_SCENARIOS}")
+    if count > MAX_SCENARIOS:
+        raise UserError(f"the grid has {count} scenarios; the most that a sweep runs is {MAX_SCENARIOS}")
     return Scenarios(count, partial(_grid_rows, axes), axes)
 
 
@@ -71,7 +71,7 @@ def _grid_rows(axes: Mapping[str, np.ndarray], first: int, stop: int) -> dict[st
 
 def drawn(variables: Variables, vary: Vary, count: int, seed: int) -> Scenarios:
     """Each value drawn by itself."""
-    check_whole(count, MOST_SCENARIOS, "random")
+    check_whole(count, MAX_SCENARIOS, "random")
     values = {name: _values(variables, name, given, "low:high")[0] for name, given in vary.items()}
     ends = {name: each.spaced(2) if isinstance(each, Range) else each for name, each in values.items()}
     return Scenarios(count, partial(_drawn_rows, values, seed), ends)
@@ -139,5 +139,5 @@ def _count(text: str, name: str) -> int:
     if not re.fullmatch("[-+]?[0-9]{1,20}", text):
         raise UserError(f"vary {name}: the count {shown(text)} is not a whole number")
     count = int(text)
-    check_whole(count, MOST_VALUES, f"vary {name}: the count")
+    check_whole(count, MAX_VALUES, f"vary {name}: the count")
     return count

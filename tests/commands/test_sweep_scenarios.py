@@ -13,7 +13,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.sweeps import run as command
 from frictioncontact.sweeps.run import sweep
-from frictioncontact.sweeps.scenarios import MOST_SCENARIOS, Vary, drawn, grid
+from frictioncontact.sweeps.scenarios import MAX_SCENARIOS, Vary, drawn, grid
 
 
 def table(fmu_path: Path, folder: Path, *arguments: str) -> pd.DataFrame:
@@ -86,8 +86,8 @@ RANDOM: Vary = {"V": "0.01:1:log", "d": "12e-6:16e-6", "friction.model": "Dahl,C
 
 @pytest.mark.parametrize("random", [False, True])
 def test_a_row_of_a_thousand_million_depends_on_its_number_alone(fmu: FrictionFmu, random: bool) -> None:
-    made = drawn(fmu.known, RANDOM, MOST_SCENARIOS, 7) if random else grid(fmu.known, GRID)
-    assert made.count == (MOST_SCENARIOS if random else 24999 * 20000 * 2)
+    made = drawn(fmu.known, RANDOM, MAX_SCENARIOS, 7) if random else grid(fmu.known, GRID)
+    assert made.count == (MAX_SCENARIOS if random else 24999 * 20000 * 2)
     for place in (0, 39_999, 123_456_789, made.count - 40):
         whole = pd.DataFrame(made.rows(place, place + 40))
         for first, stop in ((0, 1), (3, 17), (17, 40)):

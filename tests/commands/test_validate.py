@@ -82,7 +82,7 @@ def in_short_pieces(part: measurements.Record, fit: record.RecordFit, bounded: b
     Its closed form over a path dx at a held limit L is F -> s L + (F - s L) exp(-k |dx| / L), s = sgn dx.
     """
     pieces = 50
-    load = np.maximum(part.load, record.LEAST_LOAD)
+    load = np.maximum(part.load, record.MIN_LOAD)
     forces = [float(fit.unloading[0])]
     for dx, begin, end in zip(np.diff(part.position), load, load[1:], strict=False):
         F = forces[-1]

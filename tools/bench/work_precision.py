@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from frictioncontact.command import as_table, progress_bar, say_written, table_console, write_csv
-from frictioncontact.plausibility import FIXED_STEPS
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
+from frictioncontact.plausibility import FIXED_STEPS
 from tools.bench import figures
 from tools.bench.cases import PLAIN_PROGRAMS, SIGMAS, Case, cases, expected, plain, sampled, vibrating
 from tools.bench.driver import Bench, Job, Outcome, bench_options, open_bench, renew_docs

@@ -1,4 +1,4 @@
-"""The plateaus of the constants of fmu_src/solver/integrate/tuning.h: evaluations and errors at half and twice.
+"""The plateaus of the constants of solver/integrate/tuning.h: evaluations and errors at half and twice.
 
     .venv/bin/python -m tools.constants.plateaus            all, a quarter of an hour
     .venv/bin/python -m tools.constants.plateaus FC_SAFETY  these

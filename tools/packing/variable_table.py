@@ -1,4 +1,4 @@
-"""Writes the C tables of fmu_src/fmi2/variables.h from modelDescription.xml and frictioncontact/plausibility.py.
+"""Writes the C tables of fmi2/variables.h from modelDescription.xml and frictioncontact/plausibility.py.
 
 usage: python -m tools.packing.variable_table modelDescription.xml variables.c
 """

@@ -19,9 +19,9 @@ from typing import Any
 
 import fmpy
 
-from frictioncontact.plausibility import USED
 from frictioncontact.errors import UserError
 from frictioncontact.files import whole_file
+from frictioncontact.plausibility import USED
 from tools.description import XML, description
 from tools.packing import model_description, variable_table
 from tools.presets import presets

@@ -22,7 +22,7 @@ FIRST = 12.75  # s, where the second cycle begins; the first one starts from res
 FITTED = 2  # cycles
 CYCLES = 49  # from FIRST on, the fitted ones among them
 UNLOADING = (209.4, 212.0)  # s
-LEAST_LOAD = 1e-3  # N; below it the measured load is the sensor's noise
+MIN_LOAD = 1e-3  # N; below it the measured load is the sensor's noise
 CARRYING = 0.7  # N; below it force over load is dominated by what the sensors miss
 
 
@@ -101,7 +101,7 @@ def along_path(fmu: FrictionFmu, record: Record, start_values: dict[str, Value])
     """F_t [N] at the samples; position and load are linear in time between them."""
     steps = np.diff(record.time)
     velocity = np.diff(record.position) / steps
-    load = np.maximum(record.load, LEAST_LOAD)
+    load = np.maximum(record.load, MIN_LOAD)
     inputs = {"V": velocity, "load": load}
     rates = {"V": np.zeros(len(steps)), "load": np.diff(load) / steps}
     return run(fmu, start_values, steps, inputs, rates, outputs=("F_t",))[:, 0]
@@ -152,7 +152,7 @@ def without_bound(record: Record, fit: RecordFit) -> np.ndarray:
     assert fit.stiffness is not None
     stiffness = fit.stiffness
     part = record.between(*UNLOADING)
-    load = np.maximum(part.load, LEAST_LOAD)
+    load = np.maximum(part.load, MIN_LOAD)
     velocity = np.diff(part.position) / np.diff(part.time)
     forces = [float(fit.unloading[0])]
     for k, V in enumerate(velocity):
