@@ -1,1 +1,1 @@
-"""The figures of the paper, the regimes and the identification, and the page that shows them."""
+"""The figures of the paper and of the regimes, and the page that shows them."""

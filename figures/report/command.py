@@ -1,7 +1,6 @@
 """Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the
-equations give, the height statistics, the regimes and sensitivities of the mean friction, and the
-identification. Writes build/report/index.html, one page that needs no network, and each figure as SVG and
-PNG beside it."""
+equations give, the height statistics, and the regimes and sensitivities of the mean friction. Writes
+build/report/index.html, one page that needs no network, and each figure as SVG and PNG beside it."""
 
 import argparse
 import platform
@@ -9,7 +8,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.metadata import version
 
-from figures.report import paper, recovery, regimes
+from figures.report import paper, regimes
 from figures.report.figure import Figure
 from figures.report.page import page
 from frictioncontact.command import add_fmu, add_output, command_line, progress_bar
@@ -39,7 +38,6 @@ def jobs(fmu: FrictionFmu, quick: bool) -> list[Callable[[], Figure]]:
         *(partial(figure, fmu) for figure in paper.FIGURES),
         paper.heights,
         *(partial(figure, fmu.path, quick) for figure in of_regimes),
-        partial(recovery.figure, fmu, 4 if quick else 20),
     ]
 
 
