@@ -300,7 +300,7 @@ bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* messa
 static bool find_force(const FcScene* scene, const FcContactResponse* contact, const FcBody* body,
                        FcBristle bristle, FcVector* force, FcMessage* message) {
     *force = fc_force(scene, contact, bristle);
-    if (body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene)) {
+    if (body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene, body)) {
         bool sticks;
         force->x = fc_body_rigid_force(scene, body, &sticks);
     }
@@ -417,7 +417,7 @@ bool fc_friction_contact_sticks(FcFrictionContact* contact) {
     const FcScene scene = fc_friction_contact_scene(contact);
     const FcBody body = fc_friction_contact_body(contact);
     bool sticks = false;
-    if (body.m > 0.0 && scene.friction->model == FC_COULOMB && fc_body_rests(&scene)) {
+    if (body.m > 0.0 && scene.friction->model == FC_COULOMB && fc_body_rests(&scene, &body)) {
         fc_body_rigid_force(&scene, &body, &sticks);
     }
     return sticks;

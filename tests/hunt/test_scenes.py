@@ -59,7 +59,7 @@ def test_a_climb_finds_no_miss(trials: int, options: tuple[str, ...]) -> None:
 
 
 def test_masses_that_were_found() -> None:
-    """Rests at a step's end, turns under a fast V, break-away with a damper, a path far below that of V."""
+    """Rests at a step's end and under a fast V, touches of w = 0, dampers, panels that cannot be solved."""
     done = hunt("--file", str(SCENES.with_name("masses.txt")))
     assert done.returncode == 0, done.stdout + done.stderr
     assert " 0 refused, 0 beyond the reference, 0 misses" in done.stdout

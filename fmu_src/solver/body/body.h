@@ -51,9 +51,9 @@ FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristl
 // m w + sigma_1 delta stays. Adds work and heat; V of the scene contains v before.
 void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* now);
 
-// Coulomb's law: whether the surfaces rest on each other at the start of that scene, and F_t [N] there, of which
-// *sticks says whether it is below the limit.
-bool fc_body_rests(const FcScene* scene);
+// Coulomb's law: whether the surfaces rest on each other at the start of a scene whose V contains v, and F_t [N] there, of
+// which *sticks says whether it is below the limit.
+bool fc_body_rests(const FcScene* scene, const FcBody* body);
 double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* sticks);
 
 // The step [0, h], h [s] >= 0, of a scene along a line, whose V does not contain v: from a bristle that is within its bound,

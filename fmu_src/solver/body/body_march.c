@@ -131,6 +131,19 @@ static double place_of(const March* march, Event event, const FcNodes* nodes, co
     return FC_FASTEST(fc_first_upcrossing)(f, close.rounding);
 }
 
+// The same of a reversal. A w that begins beyond 0, as far as an event may miss it, may come back between two samples: the
+// points are close at the start.
+static double place_of_reversal(const March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
+    double place = place_of(march, REVERSAL, nodes, panel);
+    const int side = march->at.side;
+    for (int i = 1; i < STAGES && place > 1.0; i++) {
+        if (side * panel->w[i - 1] >= 0.0 && side * panel->w[i] < 0.0) {
+            place = FC_RADAU.node[i] + 0.5;
+        }
+    }
+    return place;
+}
+
 // The first event in the panel and its place. A panel that comes into a Stribeck curve is cut there before it is asked for
 // others, since its points do not show the curve.
 static Event first_event(const March* march, const FcNodes* nodes, const FcBodyPanel* panel, double* place) {
@@ -147,7 +160,7 @@ static Event first_event(const March* march, const FcNodes* nodes, const FcBodyP
     *place = 2.0;
     if (kind == FC_RELAXES) {
         first = REVERSAL;
-        *place = place_of(march, REVERSAL, nodes, panel);
+        *place = place_of_reversal(march, nodes, panel);
     }
     if (kind == FC_SLIPS || march->is_bounded) {
         const Event at_bound = kind == FC_SLIPS ? END_OF_PUSH : MEETING;
@@ -202,9 +215,9 @@ static bool make(March* march, double u, double h, FcNodes* nodes, FcBodyPanel* 
 }
 
 // The factor by which the errors of a panel are too large.
-// - The slopes of delta and v that the collocation does not resolve act at the end as a force, which lives until the bristle
-//   forgets it, and on the momentum.
-// - The quadratures act on work and heat.
+// - The slopes of delta and v that the collocation does not resolve act at the end as a force, by the spring and the dampers,
+//   which lives until the bristle forgets it, and on the momentum.
+// - The quadratures act on work and heat: those of the spring and of the dampers.
 static double error_ratio_of(const March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
     const FcInterval* interval = march->interval;
     const FcKind kind = march->at.kind;
@@ -214,33 +227,37 @@ static double error_ratio_of(const March* march, const FcNodes* nodes, const FcB
     double FC_PAIRED of_delta[POINTS];
     double FC_PAIRED of_v[POINTS];
     double F[POINTS];
+    double FC_PAIRED damped[POINTS]; // N
+    const FcFriction* friction = friction_of(march);
     double z = kind == FC_SLIPS ? 0.0 : omega * nodes->duration;
     for (int i = 0; i < POINTS; i++) {
         F[i] = nodes->sigma[i] * panel->delta[i];
+        damped[i] = (friction->sigma_1 * panel->rate[i].delta + friction->sigma_2 * panel->w[i]) *
+                    (1.0 + panel->w[i] / march->speed) * nodes->tau[i] / nodes->duration;
         of_delta[i] = nodes->tau[i] * panel->rate[i].delta;
         of_v[i] = nodes->tau[i] * panel->rate[i].v;
         z += FC_RADAU.weight[i] * nodes->tau[i] * panel->rate[i].relaxation;
     }
     // The parts of a slope that cancel are rounded: delta' of w and the relaxation, v' of the forces.
-    const FcFriction* friction = friction_of(march);
     const double w = fc_max(fabs(panel->w[START]), fabs(panel->w[LAST]));
     const double forces = fabs(fc_input_after(march->body->F, nodes->t[LAST])) + fabs(F[LAST]) +
                           (2.0 * friction->sigma_1 + friction->sigma_2) * w;
     const double rounded = ROUNDING * fc_max(nodes->tau[START], nodes->tau[LAST]);       // s
     const double e_v = fc_max(0.0, m * fc_radau_unresolved(of_v, z) - rounded * forces); // N s
-    double of_end = 0.0;                                                                 // N
+    double of_end = (friction->sigma_1 + friction->sigma_2) / m * e_v;                   // N
     double life = H;
     if (kind != FC_SLIPS) {
         const double r = panel->rate[LAST].relaxation;
         const double e_delta = fc_max(0.0, fc_radau_unresolved(of_delta, z) - rounded * 2.0 * w); // m
-        of_end = interval->stiffness * e_delta / (1.0 + nodes->tau[LAST] * r) + omega * e_v;
+        of_end += interval->stiffness * e_delta / (1.0 + nodes->tau[LAST] * r) + omega * e_v;
         life = fc_min(H, 3.0 / (r + 1.0 / H));
     }
     const double share = fc_min(1.0, fc_max(1e-3, nodes->duration / life));
     const double share_of_mean = fc_min(1.0, fc_max(1e-3, nodes->duration / H));
     const double motion = fc_max(of_end / share, e_v / (H * share_of_mean));
     const double energy =
-        share_of_mean * fc_error_of_force(nodes, march->speed, 0.0, kind != FC_STICKS, F, panel->w);
+        share_of_mean * (fc_error_of_force(nodes, march->speed, 0.0, kind != FC_STICKS, F, panel->w) +
+                         fc_radau_quadrature_error(damped));
     return fc_max(SAFETY * motion, FC_SAFETY / FC_SHARE_OF_MEAN * energy) / fc_allowed_force(interval);
 }
 
@@ -312,12 +329,16 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
                          Event* event) {
     double place;
     double seen = *h; // the length of the last panel that shows the event
+    bool is_solved = true;
     *event = first_event(march, nodes, panel, &place);
     for (int cuts = 0; *event != NO_EVENT && cuts < MAX_CUTS; cuts++) {
         assert(place > 0.0 && place <= fc_max(1.5, seen / *h));
         *h *= place;
-        if (!make(march, u, *h, nodes, panel)) {
-            return false;
+        is_solved = make(march, u, *h, nodes, panel);
+        if (!is_solved) { // beyond the end of a push a long panel may have a solution, and a shorter one none
+            seen = *h;
+            place = BETWEEN;
+            continue;
         }
         double f[POINTS];
         const double close = event_function(march, *event, nodes, panel, f).allowed;
@@ -346,7 +367,7 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         }
         place = 1.0 + step;
     }
-    return true;
+    return is_solved;
 }
 
 // ---- the march ----
@@ -393,7 +414,8 @@ static void append(March* march, const FcNodes* nodes, const FcBodyPanel* panel)
         sums->heat -= 0.5 * (nodes->sigma[LAST] * end * end - nodes->sigma[START] * start * start);
     }
     const double t = nodes->t[LAST];
-    reach(march, march->part.end - t <= 1e-15 * march->part.end ? march->part.end : t, end);
+    const double rounded = 1e-15 * march->interval->duration; // of t in any variable: no layer is longer
+    reach(march, march->part.end - t <= rounded ? march->part.end : t, end);
 }
 
 // A free bristle begins, in the direction of w or, if that is 0, of its rate.
@@ -502,6 +524,15 @@ static bool take_free_time(March* march) {
     return true;
 }
 
+// Whether w lies on the other side of 0 in all of the panel.
+static bool lies_across(int side, const double w[POINTS]) {
+    double most = -HUGE_VAL;
+    for (int i = 0; i < POINTS; i++) {
+        most = fc_max(most, side * w[i]);
+    }
+    return most < 0.0;
+}
+
 // The next panel, up to its first event.
 static bool take_panel(March* march) {
     const double ringing = sqrt(march->interval->stiffness / march->body->m);
@@ -525,10 +556,14 @@ static bool take_panel(March* march) {
     if (!take_accurate(march, u, &h, &nodes, &panel)) {
         return false;
     }
-    // A push of 0 at the start decides just after.
+    // What is 0 at the start is decided just after: the push of a slip, and the side of w, which may only have touched 0.
     if (march->at.kind == FC_SLIPS && panel.rate[START].push <= EPSILON * march->speed &&
         panel.rate[0].push < 0.0) {
         begin_free(march, panel.w[START], panel.rate[START].w);
+        return true;
+    }
+    if (march->at.kind == FC_RELAXES && lies_across(march->at.side, panel.w)) {
+        begin_free(march, panel.w[LAST], panel.rate[LAST].w);
         return true;
     }
     if (!cut_at_event(march, u, &h, &nodes, &panel, &event)) {
@@ -574,6 +609,7 @@ static bool march_periods(March* march, double h) {
     const bool repeats = fc_drive_vibrates(drive) && !fc_drive_is_linear(drive) && march->body->F.rate == 0.0;
     const double period = 1.0 / drive->vibration.f;
     const double allowed = SHARE_OF_PERIODS * fc_allowed_force(march->interval);
+    const double damping = friction_of(march)->sigma_1 + friction_of(march)->sigma_2;
     while (repeats && h - march->t > 2.0 * period) {
         const FcBodyStart at = march->at;
         const FcStepResult sums = march->sums;
@@ -584,9 +620,9 @@ static bool march_periods(March* march, double h) {
         }
         const double left = floor((h - march->t) / period);
         const double force = march->interval->stiffness * fabs(march->at.delta - at.delta);
-        const double momentum = march->body->m * fabs(march->at.v - at.v);
-        if (march->at.kind == at.kind && march->at.side == at.side && left * force <= allowed &&
-            left * momentum <= allowed * h) {
+        const double dv = fabs(march->at.v - at.v);
+        const double change = force + fc_max(damping, march->body->m / h) * dv;
+        if (march->at.kind == at.kind && march->at.side == at.side && left * change <= allowed) {
             repeat(march, &sums, x, left, period);
             break;
         }

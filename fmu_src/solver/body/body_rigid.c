@@ -206,16 +206,17 @@ static void end_slip(const Rigid* of, double part, Panel* panel, double* evaluat
     }
 }
 
-bool fc_body_rests(const FcScene* scene) {
+bool fc_body_rests(const FcScene* scene, const FcBody* body) {
     const FcDrive* drive = &scene->drive;
+    const double parts = fabs(drive->V.value) + fabs(body->v); // of w: V without v may be as large as v
     const double V_1 = fabs(drive->vibration.V_1);
-    const double rounding = 4.0 * DBL_EPSILON * (fabs(drive->V.value) + V_1 * (2.0 + fabs(drive->theta_0)));
+    const double rounding = 4.0 * DBL_EPSILON * (parts + V_1 * (2.0 + fabs(drive->theta_0)));
     return fabs(fc_drive_V(drive, 0.0)) <= rounding;
 }
 
 double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* sticks) {
     const Rigid of = {.scene = scene, .body = body, .is_separated = fc_scene_is_separated(scene)};
-    assert(body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene));
+    assert(body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene, body));
     const double limit = limit_at(&of, 0.0);
     const double force = holding_force(&of, 0.0);
     *sticks = fabs(force) < limit;
@@ -236,7 +237,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
                                   ROUNDING * (options->largest + F) + DBL_MIN), // also where no force acts
                 .v = body->v};
     of.side = of.is_separated ? 0 : w < 0.0 ? -1 : 1;
-    if (fc_body_rests(&seen)) {
+    if (fc_body_rests(&seen, body)) {
         choose(&of);
     }
     double impulse = 0.0;
