@@ -24,9 +24,9 @@ import numpy.typing as npt
 from .. import resources
 from ..errors import BatchError, UserError, shown
 from ..fmu import opened
+from ..plausibility import warn_of
 from ..tables import in_SI
 from ..values import Variables, check_whole, numbers_of, pairs, real, row_of
-from .plausibility import warn_of
 from .run import Batch, Progress
 from .runner import STATISTICS, loaded, runner
 
