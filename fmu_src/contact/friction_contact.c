@@ -300,7 +300,7 @@ bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* messa
 static bool find_force(const FcScene* scene, const FcContactResponse* contact, const FcBody* body,
                        FcBristle bristle, FcVector* force, FcMessage* message) {
     *force = fc_force(scene, contact, bristle);
-    if (body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene, body)) {
+    if (body->m > 0.0 && !fc_has_bristle(scene->friction) && fc_body_rests(scene, body)) {
         bool sticks;
         force->x = fc_body_rigid_force(scene, body, &sticks);
     }
@@ -417,7 +417,7 @@ bool fc_friction_contact_sticks(FcFrictionContact* contact) {
     const FcScene scene = fc_friction_contact_scene(contact);
     const FcBody body = fc_friction_contact_body(contact);
     bool sticks = false;
-    if (body.m > 0.0 && scene.friction->model == FC_COULOMB && fc_body_rests(&scene, &body)) {
+    if (body.m > 0.0 && !fc_has_bristle(scene.friction) && fc_body_rests(&scene, &body)) {
         fc_body_rigid_force(&scene, &body, &sticks);
     }
     return sticks;
@@ -429,7 +429,7 @@ FcVector fc_friction_contact_force_rate(FcFrictionContact* contact) {
     if (fc_friction_contact_sticks(contact)) {
         return (FcVector){body.F.rate + body.m * fc_drive_velocity(&scene.drive, 0.0).curvature, 0.0};
     }
-    if (body.m > 0.0 && scene.friction->model == FC_COULOMB) {
+    if (body.m > 0.0 && !fc_has_bristle(scene.friction)) {
         scene.drive.V.rate += (body.F.value - contact->state.variables.F_t) / body.m;
     }
     return fc_force_rate(&scene, fc_friction_contact_reached(contact, &scene));
@@ -457,7 +457,7 @@ static double force_of_bristle(const FcScene* scene, double h, FcBristle from) {
         limit = fc_max(limit, fc_scene_mean_limit(scene, h));
     }
     const double delta = fc_size(from);
-    const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_separated(scene)
+    const double elastic = !fc_has_bristle(friction) || delta == 0.0 || fc_scene_is_separated(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);
     return fc_max(fc_max(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
@@ -475,7 +475,7 @@ static double least_limit(const FcScene* scene, double h) {
 // delta', where it is multiplied by sigma |V| / g. So the damping divides the allowed error of the bristle's
 // force.
 static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, FcBristle from) {
-    const double sigma_1 = v->friction.model == FC_COULOMB ? 0.0 : v->friction.sigma_1;
+    const double sigma_1 = !fc_has_bristle(&v->friction) ? 0.0 : v->friction.sigma_1;
     const double sigma_2 = v->friction.sigma_2;
     const double speed = sigma_1 != 0.0 || sigma_2 != 0.0 ? fc_drive_largest_speed(&scene->drive, h) : 0.0;
     const double damping = sigma_1 * speed;
@@ -497,7 +497,7 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
 // The bristle at the start.
 static FcBristle first_bristle(FcFrictionContact* contact) {
     FcVariables* v = &contact->state.variables;
-    if (v->friction.model == FC_COULOMB) {
+    if (!fc_has_bristle(&v->friction)) {
         return (FcBristle){0};
     }
     if (v->initialState == FC_STATE_GIVEN) {
@@ -735,7 +735,7 @@ bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h
 double fc_friction_contact_rings(const FcFrictionContact* contact, double h) {
     const FcVariables* v = &contact->state.variables;
     const FcVibration* vibration = &v->vibration;
-    const bool is_free = v->friction.model != FC_COULOMB && v->friction.sigma_1 == 0.0 &&
+    const bool is_free = fc_has_bristle(&v->friction) && v->friction.sigma_1 == 0.0 &&
                          vibration->V_1 == 0.0 && vibration->a_d == 0.0 && v->body.m > 0.0;
     const double periods = is_free ? h * sqrt(v->sigma / v->body.m) / FC_TWO_PI : 0.0;
     return periods > 1.0 ? periods : 0.0;

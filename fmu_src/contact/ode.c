@@ -40,7 +40,7 @@ static const double SLANT = -0.5463024898437905;
 static const double AFTER_TURN = 1e-9;
 
 bool fc_ode_allows(FcFrictionContact* contact, FcMessage* message) {
-    if (contact->state.variables.friction.model == FC_COULOMB) {
+    if (!fc_has_bristle(&contact->state.variables.friction)) {
         return fc_message_set(
             message, "friction.model = Coulomb (2) is not for model exchange: it has no state, and its force "
                      "jumps with the sign of V, so that a mass could not stick; take ElasticPlastic (3), or "
@@ -146,7 +146,7 @@ bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_C
         z[3] = was_open ? -closed_by : closed_by;
     }
     if (!fc_scene_is_separated(&now.scene)) {
-        if (v->friction.model != FC_ELASTIC_PLASTIC) {
+        if (!fc_may_stick(&v->friction)) {
             const FcDrive* drive = &now.scene.drive;
             z[0] = fc_drive_V(drive, 0.0) + SLANT * fc_drive_V_y(drive, 0.0);
         }
@@ -331,7 +331,7 @@ static double first_turn(const BoundView* view, int side, double start, double p
 
 // Whether a bristle that sticks from now on is near the bound of that side at the time t.
 static bool turns_near(const BoundView* view, int side, double delta, double t) {
-    return view->scene.friction->model != FC_ELASTIC_PLASTIC ||
+    return !fc_may_stick(view->scene.friction) ||
            side * (delta + fc_drive_displacement(&view->scene.drive, 0.0, t)) >
                NEAR_THE_BOUND * fc_bound(&view->plane, view->slips, t).D;
 }

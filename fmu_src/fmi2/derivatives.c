@@ -326,8 +326,8 @@ static const FcVariableInfo* expect_known(const FcInstance* instance, fmi2ValueR
                   info->name, vr);
         return NULL;
     }
-    if (info->offset == offsetof(FcVariables, friction.staticRatio) &&
-        friction->model == FC_ELASTIC_PLASTIC && friction->staticRatio == 1.0) {
+    if (info->offset == offsetof(FcVariables, friction.staticRatio) && fc_may_stick(friction) &&
+        friction->staticRatio == 1.0) {
         fc_refuse(instance, call,
                   "%s = 1: a slipping bristle would stick at any larger ratio, so that there is no "
                   "derivative",

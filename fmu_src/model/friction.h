@@ -57,6 +57,17 @@ static inline bool fc_limit_follows_load(const FcFriction* friction) {
     return friction->limit == FC_LIMIT_LOAD;
 }
 
+// Whether the law has a state, the deflection of a bristle.
+static inline bool fc_has_bristle(const FcFriction* friction) { return friction->model != FC_COULOMB; }
+
+// Whether the bristle sticks, delta' = V, below its bound.
+static inline bool fc_may_stick(const FcFriction* friction) { return friction->model == FC_ELASTIC_PLASTIC; }
+
+// Whether the bristle relaxes, delta' = V - r delta, at the rate r = sigma |V| / limit [1/s].
+static inline bool fc_may_relax(const FcFriction* friction) {
+    return fc_has_bristle(friction) && !fc_may_stick(friction);
+}
+
 // Whether the law uses staticRatio.
 static inline bool fc_may_have_static_friction(const FcFriction* friction) {
     return friction->model == FC_LUGRE || friction->model == FC_ELASTIC_PLASTIC;
@@ -69,7 +80,7 @@ static inline bool fc_has_stribeck_curve(const FcFriction* friction) {
 
 // Whether the bristle remembers that it slips.
 static inline bool fc_has_static_friction(const FcFriction* friction) {
-    return friction->model == FC_ELASTIC_PLASTIC && friction->staticRatio != 1.0;
+    return fc_may_stick(friction) && friction->staticRatio != 1.0;
 }
 
 // Static over Coulomb friction; 1 in laws without static friction.
@@ -79,8 +90,7 @@ static inline double fc_static_ratio(const FcFriction* friction) {
 
 // Whether the bristle's force has a bound along which it slips.
 static inline bool fc_is_bounded(const FcFriction* friction) {
-    return friction->model == FC_ELASTIC_PLASTIC ||
-           (friction->model != FC_COULOMB && fc_limit_follows_load(friction));
+    return fc_may_stick(friction) || (fc_may_relax(friction) && fc_limit_follows_load(friction));
 }
 
 // The velocity over V_S beyond which a Stribeck curve counts as 1: e^-25 of it remains. Chosen empirically; at half

@@ -6,7 +6,7 @@ void fc_plane_make(FcPlane* plane, const FcScene* scene) {
     plane->scene = scene;
     plane->is_one_dimensional = !fc_drive_is_planar(&scene->drive);
     plane->static_friction = *scene->friction;
-    if (scene->friction->model != FC_COULOMB) { // whose contact may be open
+    if (fc_has_bristle(scene->friction)) { // whose contact may be open
         plane->static_friction.model = FC_ELASTIC_PLASTIC;
     }
     const double ratio = fc_static_ratio(scene->friction);

@@ -58,7 +58,7 @@ FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhas
 
 // r = sigma |V| / g [1/s] of Dahl and LuGre.
 static inline double fc_plane_relaxation(const FcPlane* plane, const FcPlaneCoefficients* at) {
-    return plane->scene->friction->model == FC_ELASTIC_PLASTIC ? 0.0 : at->sigma * at->speed / at->limit;
+    return fc_may_stick(plane->scene->friction) ? 0.0 : at->sigma * at->speed / at->limit;
 }
 
 // The force [N] of Coulomb's law, g V / |V|; 0 if nothing moves.

@@ -144,7 +144,7 @@ static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
     FcPlane plane;
     fc_plane_make(&plane, scene);
     const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
-    if (scene->friction->model == FC_COULOMB) {
+    if (!fc_has_bristle(scene->friction)) {
         return (Parts){.V = at.V, .force = fc_plane_coulomb(&at)};
     }
     const FcVector delta = fc_delta(bristle);
@@ -155,7 +155,7 @@ static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
 // F_t and F_y; or their derivatives, if the parts are derivatives, since both are linear in the parts.
 static FcVector whole_force(const FcFriction* friction, const Parts* of) {
     FcVector F = of->force;
-    if (friction->model != FC_COULOMB && friction->sigma_1 != 0.0) {
+    if (fc_has_bristle(friction) && friction->sigma_1 != 0.0) {
         F = fc_plus(F, friction->sigma_1, of->delta_rate);
     }
     return friction->sigma_2 != 0.0 ? fc_plus(F, friction->sigma_2, of->V) : F;
@@ -163,7 +163,7 @@ static FcVector whole_force(const FcFriction* friction, const Parts* of) {
 
 FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
     const FcFriction* friction = scene->friction;
-    if (friction->model != FC_COULOMB && friction->sigma_1 == 0.0 && friction->sigma_2 == 0.0) {
+    if (fc_has_bristle(friction) && friction->sigma_1 == 0.0 && friction->sigma_2 == 0.0) {
         return times(contact->sigma, fc_delta(bristle));
     }
     const Parts at = parts(scene, friction->sigma_1 != 0.0 ? fc_regime(scene, bristle) : FC_FREE, bristle);
@@ -223,7 +223,7 @@ static double log_curve_along(const FcFriction* friction, FcVector V, const FcDi
 // curve, of which the static bound has the ratio.
 static double log_limit_along(const FcFriction* friction, FcRegime regime, FcVector V, double log_F_n,
                               const FcDirection* along) {
-    const bool is_static = regime != FC_FREE && friction->model != FC_ELASTIC_PLASTIC;
+    const bool is_static = regime != FC_FREE && !fc_may_stick(friction);
     return along->log_limit + (fc_limit_follows_load(friction) ? log_F_n : 0.0) +
            (is_static ? along->staticRatio / friction->staticRatio : log_curve_along(friction, V, along));
 }
@@ -255,10 +255,10 @@ static Parts slipping_along(const AtBound* of, FcBristle bristle, double log_sig
 static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, double log_limit,
                         const FcDirection* along) {
     const FcPlaneCoefficients* at = &of->at;
-    const int model = of->plane.scene->friction->model;
+    const FcFriction* friction = of->plane.scene->friction;
     const FcVector V_along = {along->V, along->V_y};
     const FcVector direction_of_V = direction(at->V);
-    if (model == FC_COULOMB) {
+    if (!fc_has_bristle(friction)) {
         FcVector turning = {0.0, 0.0};
         if (V_along.x != 0.0 || V_along.y != 0.0) { // at rest the force jumps: not a number
             turning =
@@ -269,7 +269,7 @@ static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, 
     const FcVector delta = fc_delta(bristle);
     const FcVector delta_along = {along->delta, along->delta_y};
     FcVector rate = V_along; // of delta' = V - r delta, with r = sigma |V| / g
-    if (model != FC_ELASTIC_PLASTIC) {
+    if (fc_may_relax(friction)) {
         const double r = fc_plane_relaxation(&of->plane, at);
         const double r_along =
             r * (log_sigma - log_limit) + at->sigma / at->limit * fc_product(V_along, direction_of_V);
@@ -299,7 +299,7 @@ FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristl
     const Parts change = parts_along(scene, regime, bristle, along);
     const FcVector F = whole_force(scene->friction, &at);
     FcVector F_along = fc_plus(whole_force(scene->friction, &change), along->sigma_2, at.V);
-    if (scene->friction->model != FC_COULOMB) {
+    if (fc_has_bristle(scene->friction)) {
         F_along = fc_plus(F_along, along->sigma_1, at.delta_rate);
     }
     const double power = fc_product(F_along, at.V) + fc_product(F, change.V);

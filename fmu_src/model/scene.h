@@ -41,7 +41,7 @@ FcScene fc_scene_from(const FcScene* scene, double t);
 // Whether sigma or g, if the law uses them, depends on the separation.
 static inline bool fc_uses_separation(const FcFriction* friction, int contact_model) {
     return fc_limit_follows_load(friction) ||
-           (contact_model != FC_CONTACT_CONSTANT && friction->model != FC_COULOMB);
+           (contact_model != FC_CONTACT_CONSTANT && fc_has_bristle(friction));
 }
 static inline bool fc_scene_depends_on_d(const FcScene* scene) {
     return fc_uses_separation(scene->friction, scene->at_E.model);

@@ -42,7 +42,7 @@ FcBristle fc_steady_sliding(const FcScene* scene, FcBristle from, FcVector* forc
     FcPlane plane;
     fc_plane_make(&plane, scene);
     const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
-    const bool has_bristle = scene->friction->model != FC_COULOMB;
+    const bool has_bristle = fc_has_bristle(scene->friction);
     if (at.speed == 0.0 || !isfinite(at.limit / at.sigma)) {
         *force =
             has_bristle ? (FcVector){at.sigma * from.delta, at.sigma * from.delta_y} : fc_plane_coulomb(&at);

@@ -214,7 +214,7 @@ static int indicators(realtype tau, N_Vector y, realtype* z, void* user) {
     FcScene now = scene_at(solver, tau, y, &impulse);
     const FcBristle bristle = bristle_of(solver, y);
     if (has_body(solver)) {
-        z[REVERSAL] = solver->scene.friction->model == FC_ELASTIC_PLASTIC ? 1.0 : fc_drive_V(&now.drive, 0.0);
+        z[REVERSAL] = fc_may_stick(solver->scene.friction) ? 1.0 : fc_drive_V(&now.drive, 0.0);
         z[JUMP] = inertia_of(solver, solver->regime, bristle, &now);
         add_acceleration(solver, solver->start + tau, solver->regime, bristle, &now);
     }
@@ -295,8 +295,7 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     FcDrive drive = scene->drive;
     drive.V.value += solver->body.v;
     const double path = (fc_drive_largest_speed(&drive, h) + options->force / stiffness / ring) * h;
-    const double forgets =
-        scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
+    const double forgets = fc_may_stick(scene->friction) ? 1.0 : stiffness * path / options->force;
     double periods = fc_max(1.0, vibrations / fc_max(1.0, forgets));
     double energy = 1.0; // in errors of the force
     if (has_body(solver) && vibrations == 0.0) {

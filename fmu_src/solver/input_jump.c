@@ -47,7 +47,7 @@ typedef struct {
 // Whether a bristle that breaks away drops: with static friction at the start or the end of the ramp.
 static bool drops(const Ramp* ramp) {
     const FcFriction* friction = ramp->scene->friction;
-    return friction->model == FC_ELASTIC_PLASTIC && (ramp->past.ratio > 1.0 || friction->staticRatio > 1.0);
+    return fc_may_stick(friction) && (ramp->past.ratio > 1.0 || friction->staticRatio > 1.0);
 }
 
 // Static over Coulomb friction, or Stribeck's curve of a bristle that slips, and the rate of its logarithm.

@@ -28,17 +28,15 @@ static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, co
 
 // Whether the method leaves the scene to the default.
 static bool takes_default(const FcScene* scene, FcMethod method) {
-    const int model = scene->friction->model;
-    return method == FC_METHOD_COLLOCATION || model == FC_COULOMB ||
-           (method != FC_METHOD_CVODE && model == FC_ELASTIC_PLASTIC);
+    const FcFriction* friction = scene->friction;
+    return method == FC_METHOD_COLLOCATION || !fc_has_bristle(friction) ||
+           (method != FC_METHOD_CVODE && fc_may_stick(friction));
 }
 
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result) {
     assert(fc_drive_is_constant(&scene->drive));
-    const int model = scene->friction->model;
-    if ((model != FC_DAHL && model != FC_LUGRE) || fc_scene_is_separated(scene) ||
-        !takes_default(scene, method)) {
+    if (!fc_may_relax(scene->friction) || fc_scene_is_separated(scene) || !takes_default(scene, method)) {
         return false;
     }
     fc_constant_step(scene, contact, h, from, result);

@@ -31,7 +31,7 @@ double fc_body_acceleration(const FcScene* scene, FcRegime regime, FcBristle bri
 FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle) {
     FcScene seen = *scene;
     seen.drive.V.value += body->v;
-    if (seen.friction->model != FC_COULOMB) {
+    if (fc_has_bristle(seen.friction)) {
         const bool slips = bristle.slips != 0;
         const FcRegime regime = slips ? (FcRegime)fc_side(bristle) : fc_regime(&seen, bristle);
         seen.drive.V.rate += fc_body_acceleration(&seen, regime, bristle, body, body->F.value);
@@ -105,7 +105,7 @@ bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* o
         if (is_separated) {
             fc_open_contact_step(result);
         }
-        const bool is_rigid = is_separated || scene->friction->model == FC_COULOMB;
+        const bool is_rigid = is_separated || !fc_has_bristle(scene->friction);
         const bool is_done =
             is_rigid ? fc_body_rigid_step(segments.scene, options, segments.h, body, result, message)
             : cvode  ? fc_body_cvode_step(cvode, segments.scene, options, segments.h, body, result, message)

@@ -420,7 +420,7 @@ static void append(March* march, const FcNodes* nodes, const FcBodyPanel* panel)
 
 // A free bristle begins, in the direction of w or, if that is 0, of its rate.
 static void begin_free(March* march, double w, double w_rate) {
-    const bool relaxes = friction_of(march)->model != FC_ELASTIC_PLASTIC;
+    const bool relaxes = !fc_may_stick(friction_of(march));
     march->h = 0.0;
     march->at.kind = relaxes ? FC_RELAXES : FC_STICKS;
     march->at.side = !relaxes ? 0 : w > 0.0 || (w == 0.0 && w_rate >= 0.0) ? 1 : -1;
@@ -443,7 +443,7 @@ static void begin_slip(March* march) {
         scene.drive.V.value += march->at.v;
         fc_body_drop(&scene, march->body->m, friction->sigma_1, &march->sums);
     } else {
-        const double over = friction->model == FC_ELASTIC_PLASTIC ? fc_static_over_limit(friction, w) : 1.0;
+        const double over = fc_may_stick(friction) ? fc_static_over_limit(friction, w) : 1.0;
         const double D = at.static_limit / over / at.sigma;
         const double lost = fabs(before) - D;
         march->sums.delta = side * D;
@@ -661,8 +661,7 @@ static void begin(March* march, FcBristle bristle) {
 
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && scene->friction->model != FC_COULOMB &&
-           !fc_scene_is_separated(scene));
+    assert(h >= 0.0 && body->m > 0.0 && fc_has_bristle(scene->friction) && !fc_scene_is_separated(scene));
     if (h == 0.0) {
         return true;
     }

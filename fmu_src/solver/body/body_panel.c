@@ -26,8 +26,8 @@ static Limit limit_at(const FcPlane* plane, double static_limit, double w) {
 
 // The bound along which a bristle slips: the kinetic one in ElasticPlastic, else the static one.
 static Limit bound_at(const FcPlane* plane, double static_limit, double w) {
-    return plane->scene->friction->model == FC_ELASTIC_PLASTIC ? limit_at(plane, static_limit, w)
-                                                               : (Limit){static_limit, 0.0};
+    return fc_may_stick(plane->scene->friction) ? limit_at(plane, static_limit, w)
+                                                : (Limit){static_limit, 0.0};
 }
 
 // The integral of the force on the mass from the panel's start to a stage [N s].
@@ -180,7 +180,7 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
                       const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     const FcFriction* friction = plane->scene->friction;
     const double m = body->m;
-    const bool is_linear = friction->model != FC_ELASTIC_PLASTIC || !fc_has_static_friction(friction);
+    const bool is_linear = !fc_may_stick(friction) || !fc_has_static_friction(friction);
     for (int i = 0; i < STAGES; i++) {
         panel->v[i] = start->v;
     }
@@ -239,7 +239,7 @@ FcBodyRates fc_body_rates(const FcPlane* plane, const FcBody* body, const FcBody
     const Limit limit = limit_at(plane, static_limit, w);
     const double F = fc_input_after(body->F, t) - friction->sigma_2 * w;
     FcBodyRates of = {.limit = limit.g, .inertia = 1.0};
-    if (at->kind != FC_STICKS && friction->model != FC_ELASTIC_PLASTIC) {
+    if (at->kind != FC_STICKS && !fc_may_stick(friction)) {
         of.relaxation = sigma * fabs(w) / limit.g;
     }
     if (at->kind != FC_SLIPS) {

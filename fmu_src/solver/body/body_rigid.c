@@ -216,7 +216,7 @@ bool fc_body_rests(const FcScene* scene, const FcBody* body) {
 
 double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* sticks) {
     const Rigid of = {.scene = scene, .body = body, .is_separated = fc_scene_is_separated(scene)};
-    assert(body->m > 0.0 && scene->friction->model == FC_COULOMB && fc_body_rests(scene, body));
+    assert(body->m > 0.0 && !fc_has_bristle(scene->friction) && fc_body_rests(scene, body));
     const double limit = limit_at(&of, 0.0);
     const double force = holding_force(&of, 0.0);
     *sticks = fabs(force) < limit;
@@ -225,8 +225,7 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
 
 bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
                         FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 &&
-           (scene->friction->model == FC_COULOMB || fc_scene_is_separated(scene)));
+    assert(h >= 0.0 && body->m > 0.0 && (!fc_has_bristle(scene->friction) || fc_scene_is_separated(scene)));
     const FcScene seen = fc_body_scene(scene, body, (FcBristle){0});
     const double w = fc_drive_V(&seen.drive, 0.0);
     const double F = fc_max(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));

@@ -154,7 +154,7 @@ bool fc_take_closed_form(FcIntegrator* integrator) {
         }
         return !has_moving_curve;
     case FC_SLIPS:
-        return friction->model == FC_ELASTIC_PLASTIC && slips_surely(integrator);
+        return fc_may_stick(friction) && slips_surely(integrator);
     case FC_STICKS:
         if (has_constant_coefficients && integrator->slips == 0) {
             stick_to_meeting(integrator);

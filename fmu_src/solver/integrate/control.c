@@ -184,8 +184,8 @@ double fc_control_error_ratio(const FcControl* control, const FcPart* part, cons
     // of a relaxing bristle may err by a part of its change alone.
     const FcFriction* friction = interval->scene->friction;
     const double V = fc_min(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
-    const bool in_curve =
-        friction->model == FC_LUGRE && (friction->staticRatio - 1.0) * exp(-V * V) > interval->tolerance;
+    const bool in_curve = fc_may_relax(friction) && fc_has_stribeck_curve(friction) &&
+                          (friction->staticRatio - 1.0) * exp(-V * V) > interval->tolerance;
     const double path = interval->speed * interval->duration / interval->saturation;
     const double whole = allowed * (in_curve ? fc_min(1.0, fc_max(panel->z, path)) : 1.0);
     *of_end = FC_SAFETY * end_error / fc_max(FC_SHARE_OF_END * whole, rounding);

@@ -16,11 +16,11 @@ static const double OF_A_MODULUS = 4.0;
 static const double OF_NEWTON = 2.0;
 
 FcKind fc_kind(const FcIntegrator* integrator) {
-    const int model = integrator->interval->scene->friction->model;
-    return model == FC_COULOMB || integrator->is_rigid ? FC_NO_BRISTLE
-           : integrator->is_slipping                   ? FC_SLIPS
-           : model == FC_ELASTIC_PLASTIC               ? FC_STICKS
-                                                       : FC_RELAXES;
+    const FcFriction* friction = integrator->interval->scene->friction;
+    return !fc_has_bristle(friction) || integrator->is_rigid ? FC_NO_BRISTLE
+           : integrator->is_slipping                         ? FC_SLIPS
+           : fc_may_stick(friction)                          ? FC_STICKS
+                                                             : FC_RELAXES;
 }
 
 FcVector fc_integrator_delta(const FcIntegrator* integrator) {

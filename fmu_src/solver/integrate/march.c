@@ -27,8 +27,7 @@ static bool may_fall(const FcScene* bound) {
 }
 
 static bool may_meet(const FcScene* scene, const FcScene* bound) {
-    return fc_is_bounded(scene->friction) &&
-           (scene->friction->model == FC_ELASTIC_PLASTIC || may_fall(bound));
+    return fc_is_bounded(scene->friction) && (fc_may_stick(scene->friction) || may_fall(bound));
 }
 
 // The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
@@ -48,9 +47,9 @@ static double first_transient(const FcIntegrator* integrator, double scale) {
 }
 
 static void start_control(FcIntegrator* integrator, double scale) {
-    const int model = integrator->interval->scene->friction->model;
-    const bool has_transient = model == FC_DAHL || model == FC_LUGRE ||
-                               (model == FC_ELASTIC_PLASTIC && !integrator->plane->is_one_dimensional);
+    const FcFriction* friction = integrator->interval->scene->friction;
+    const bool has_transient =
+        fc_may_relax(friction) || (fc_may_stick(friction) && !integrator->plane->is_one_dimensional);
     fc_control_start(&integrator->control, integrator->plane, integrator->interval,
                      has_transient ? first_transient(integrator, scale) : 0.0);
 }
@@ -101,7 +100,7 @@ static void integrate_part(FcIntegrator* integrator, int number) {
 static const double RIGID = DBL_EPSILON;
 
 static bool may_be_rigid(const FcInterval* interval) {
-    return interval->scene->friction->model != FC_COULOMB &&
+    return fc_has_bristle(interval->scene->friction) &&
            interval->saturation <= RIGID * interval->speed * interval->duration; // at the most
 }
 
@@ -151,8 +150,7 @@ static void end_on_bound(FcIntegrator* integrator) {
         F.x = integrator->part.side * end.limit;
     }
     fc_set_delta(integrator, (FcVector){F.x / end.sigma, F.y / end.sigma});
-    integrator->slips = integrator->is_slipping =
-        integrator->interval->scene->friction->model == FC_ELASTIC_PLASTIC;
+    integrator->slips = integrator->is_slipping = fc_may_stick(integrator->interval->scene->friction);
     integrator->meetings += integrator->is_bounded;
 }
 
@@ -215,7 +213,7 @@ static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
     const double h = interval->duration;
     const double farthest = fc_size(bristle) + longest_way(&scene->drive, h);
     const double D = fc_static_ratio(scene->friction) * fc_scene_smallest_saturation(scene, h);
-    return scene->friction->model == FC_ELASTIC_PLASTIC && bristle.slips == 0 && farthest < (1.0 - 1e-9) * D;
+    return fc_may_stick(scene->friction) && bristle.slips == 0 && farthest < (1.0 - 1e-9) * D;
 }
 
 static void march(const FcInterval* interval, FcStepResult* result) {

@@ -157,8 +157,8 @@ static int order_at(const FcSpeedBound* bound, double x) {
 // L without a curve: the larger of eps and the layer, for the order for which it is least.
 static double length_of_layer(const FcPlane* plane, const FcSpeedBound* bound, double path, double of_layer,
                               double h, double* eps) {
-    const bool relaxes = plane->scene->friction->model != FC_COULOMB &&
-                         (!plane->is_one_dimensional || plane->scene->friction->model != FC_ELASTIC_PLASTIC);
+    const bool relaxes = fc_has_bristle(plane->scene->friction) &&
+                         (!plane->is_one_dimensional || !fc_may_stick(plane->scene->friction));
     *eps = time_of_change(bound, bound->of[0]);
     if (!relaxes) {
         return plane->is_one_dimensional ? INFINITY : *eps;
@@ -194,7 +194,7 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     if (has_curve) {
         const double of_curve =
             fc_max(time_of_change(&of.speed_bound, V_S), plane->is_one_dimensional ? 0.0 : eps);
-        if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
+        if (of_curve < 0.5 * of.length && fc_may_relax(scene->friction)) {
             of.edge = time_of_change(&of.speed_bound, FC_END_OF_CURVE * V_S);
         }
         of.length = fc_min(of.length, of_curve);

@@ -154,7 +154,7 @@ FC_INLINE void exact_integrals(const FcNodes* nodes, double held, double limit, 
 
 FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, bool planar,
                     bool for_any, FcPanel* panel) {
-    const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
+    const bool relaxes = !fc_may_stick(plane->scene->friction);
     const double over_duration = 1.0 / nodes->duration;
     double FC_PAIRED z[POINTS];
     double FC_PAIRED rate[POINTS]; // r times the duration

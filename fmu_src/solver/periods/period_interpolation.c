@@ -299,7 +299,7 @@ static double distance_less_way(const Block* block, double k) {
 // reverses; else there is none.
 static bool predicts_slips(const Block* block) {
     const FcScene first = scene_at(block, 0.0);
-    if (block->of->side == 0 || first.friction->model != FC_ELASTIC_PLASTIC ||
+    if (block->of->side == 0 || !fc_may_stick(first.friction) ||
         fabs(first.drive.V.value) >= first.drive.vibration.V_1) {
         return true;
     }
@@ -348,7 +348,7 @@ static Margins margins_of(const Block* block) {
                        .swing = 2.0 * swing,
                        .V = {drive->V.value, drive->V_y.value},
                        .rate = {drive->V.rate * block->period, drive->V_y.rate * block->period}};
-    if (first.friction->model == FC_ELASTIC_PLASTIC) { // else it may swing about any middle
+    if (fc_may_stick(first.friction)) { // else it may swing about any middle
         const FcPhase phase = fc_drive_phase(drive, 0.0);
         const double square = drive->omega * drive->omega;
         margins.middle.x = (drive->V.rate - fc_drive_velocity_at_phase(drive, 0.0, phase).rate) / square;
@@ -507,7 +507,7 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
             fc_map_apply_across(&at.across, &result);
         }
     }
-    const bool sticks = of->scene->friction->model == FC_ELASTIC_PLASTIC;
+    const bool sticks = fc_may_stick(of->scene->friction);
     if (places > 0 &&
         (sticks ? meets_while_stuck(block, suspects, places) : meets_in_some(block, suspects, places))) {
         return false;

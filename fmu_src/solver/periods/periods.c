@@ -66,7 +66,7 @@ static FcMap free_map_of(PeriodicSearch* search) {
         search->free_map =
             fc_march_map(search->scene, search->options, search->period, size_of(&search->total),
                          search->is_planar ? &search->free_map_across : NULL, &search->total.evaluations);
-        if (search->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
+        if (fc_may_stick(search->scene->friction)) { // to the last digit
             search->free_map.offset = search->scene->drive.V.value * search->period;
             search->free_map_across.offset = search->scene->drive.V_y.value * search->period;
         }
