@@ -89,13 +89,6 @@ def save(figure: Figure, *paths: str | Path) -> None:
             figure.savefig(unfinished, format=path.suffix[1:], metadata=metadata)
 
 
-def save_both(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Saves as name.svg and name.png in the folder."""
-    paths = [folder / f"{name}.svg", folder / f"{name}.png"]
-    save(figure, *paths)
-    return paths
-
-
 def note(axes: Axes, text: str, x: float = 0.02, y: float = 0.96, **options: Any) -> None:
     """Small grey remark inside the axes, at fractions of their width and height."""
     settings = {"fontsize": 8.5, "color": GREY, "va": "top", "transform": axes.transAxes}

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch
 
+from figures.figure import Figure, Line, Panel
 from frictioncontact import style
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
@@ -142,14 +143,19 @@ def level_errors(fmu: FrictionFmu, kappas: np.ndarray, alpha: float) -> dict[str
 
 
 def draw_levels(fmu: FrictionFmu, path: Path) -> None:
-    figure, panels = style.subplots(2, 1, size=(5.6, 6.6), sharex=True, sharey=True)
-    kappas = np.geomspace(1e-2, 1e5, 57)
-    for axes, (alpha, title) in zip(panels, ALPHAS.items(), strict=True):
-        for name, errors in level_errors(fmu, kappas, alpha).items():
-            axes.loglog(kappas, errors, label=name)
+    kappas, panels = np.geomspace(1e-2, 1e5, 57), []
+    look = {"xscale": "log", "yscale": "log", "ylim": (1e-5, 3.0), "xlim": kappas[[0, -1]]}
+
+    def percent(axes: Axes) -> None:
         axes.axhline(0.01, color=style.GREY, lw=1.0, ls="--")
-        axes.set(title=title, ylabel="error of the mean / $F_C$", ylim=(1e-5, 3.0), xlim=kappas[[0, -1]])
-    panels[0].text(1.3e-2, 0.012, "1 %", fontsize=9, va="bottom", color=style.GREY)
-    panels[1].set_xlabel("κ = σ $V_1$/(2πf $F_C$)")
-    figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    style.save(figure, path)
+        axes.text(1.3e-2, 0.012, "1 %", fontsize=9, va="bottom", color=style.GREY)
+
+    for alpha, title in ALPHAS.items():
+        errors = level_errors(fmu, kappas, alpha).items()
+        lines = [
+            Line(kappas, of, name, colour) for (name, of), colour in zip(errors, style.CYCLE, strict=False)
+        ]
+        x_label = "κ = σ V_1/(2πf F_C)" if alpha else ""
+        panels.append(Panel(title, x_label, "error of the mean / F_C", [*lines, percent], look))
+    shared = {"sharex": True, "sharey": True}
+    Figure(path.stem, "", "", panels, 1, (5.6, 6.6), 2, shared).draw(path)

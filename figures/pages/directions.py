@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from figures.figure import Figure, Line, Panel
 from frictioncontact import style
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu, Value
@@ -49,16 +50,16 @@ def mean(fmu: FrictionFmu, start_values: dict[str, Value], V: np.ndarray) -> np.
 
 
 def draw(fmu: FrictionFmu, path: Path) -> None:
-    figure, panels = style.subplots(3, 1, size=(5.2, 8.6), sharex=True)
     V = np.unique(np.concatenate([np.geomspace(1e-3, 10.0, 121), np.linspace(1.2, 1.5, 31), [AMPLITUDE]]))
     speed, height = f"{AMPLITUDE} m/s", f"{1e6 * HEIGHT:g} µm"
     titles = f"Along the sliding, {speed}", f"Transverse, {speed}", f"Normal, {height}"
-    for axes, direction, title in zip(panels, DIRECTIONS, titles, strict=True):
-        for law, kappa, colour, dash, label in LINES:
-            force = mean(fmu, scene(law, kappa, direction), V)
-            axes.semilogx(V, force, dash, color=colour, lw=2.2, label=label)
-        axes.set(title=title, xlim=(V[0], V[-1]), ylim=(0.0, 1.06))
-        axes.set_ylabel("mean friction over $F_C$")
-    panels[-1].set_xlabel("sliding velocity V [m/s]")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    style.save(figure, path)
+    look, panels = {"xscale": "log", "xlim": (V[0], V[-1]), "ylim": (0.0, 1.06)}, []
+    for direction, title in zip(DIRECTIONS, titles, strict=True):
+        lines = [
+            Line(V, mean(fmu, scene(law, kappa, direction), V), label, colour, dash, 2.2)
+            for law, kappa, colour, dash, label in LINES
+        ]
+        x_label = "sliding velocity V [m/s]" if direction == "normal" else ""
+        panels.append(Panel(title, x_label, "mean friction over F_C", lines, look))
+    below = {"size": (5.2, 8.6), "shared_legend": 2, "options": {"sharex": True}}
+    Figure(path.stem, "", "", panels, 1, **below).draw(path)

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.metadata import version
 
+from figures.figure import Figure
 from figures.report import paper, regimes
-from figures.report.figure import Figure
 from figures.report.page import page
 from frictioncontact.command import add_fmu, add_output, command_line, progress_bar
 from frictioncontact.files import write_whole

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-from figures.report.figure import Figure, text
+from figures.figure import Figure, text
 from frictioncontact.periodic import reduction
 from frictioncontact.table2 import Result, conditions
 from tools.project import ROOT

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter
 
-from figures.report.figure import Figure, Level, Line, Panel
+from figures.figure import Figure, Level, Line, Panel
 from frictioncontact.fmu import FrictionFmu, simulate
 from frictioncontact.gap import area, gaussian, stiffness
 from frictioncontact.parameters import (

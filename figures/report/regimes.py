@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from figures.report.figure import Figure, Line, Panel, text
+from figures.figure import Figure, Line, Panel, text
 from frictioncontact.batch import simulate_many
 from frictioncontact.parameters import (
     COULOMB_FORCE,

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
@@ -38,6 +39,13 @@ SHOWN = ("vibrating-6e06", "vibrating-6e10", "vibrating-V", "vibrating-d", "line
 SMALLEST_ERROR = 1e-16
 
 
+def save_both(figure: Figure, folder: Path, name: str) -> list[Path]:
+    """Saves as name.svg and name.png in the folder."""
+    paths = [folder / f"{name}.svg", folder / f"{name}.png"]
+    style.save(figure, *paths)
+    return paths
+
+
 def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Path) -> list[Path]:
     """Small multiples of the scenes in SHOWN, of those that were measured; every method is in the CSV."""
     names = [name for name in SHOWN if name in titles] or list(titles)
@@ -57,7 +65,7 @@ def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Pat
         panel.set_xlabel(r"error of $F_t$ and its mean, over $F_C$")
     figure.supylabel("CPU time for 50 µs [µs]", fontsize=10)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    return style.save_both(figure, folder, "work-precision")
+    return save_both(figure, folder, "work-precision")
 
 
 def mass_work(points: Sequence[Any], titles: Mapping[str, str], path: Path) -> None:
@@ -96,7 +104,7 @@ def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]
         panel.set(title=title, xlabel="communication step over vibration period")
         panel.set_ylabel("largest error over $F_C$")
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    return style.save_both(figure, folder, "step-size")
+    return save_both(figure, folder, "step-size")
 
 
 def periods(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
@@ -113,7 +121,7 @@ def periods(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
         panel.set_xlabel("periods in the step")
     figure.supylabel("evaluations over those of one period, held", fontsize=10)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    return style.save_both(figure, folder, "periods")
+    return save_both(figure, folder, "periods")
 
 
 def stability(
@@ -140,7 +148,7 @@ def stability(
         Line2D([], [], color=style.BLACK, marker="x", linestyle="", label="measured"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    return style.save_both(figure, folder, "stability")
+    return save_both(figure, folder, "stability")
 
 
 def coupled(
@@ -176,4 +184,4 @@ def coupled(
         title="Jacobi master; dashed: stable up to here while it sticks",
     )
     panel.legend()
-    return style.save_both(figure, folder, "coupled")
+    return save_both(figure, folder, "coupled")

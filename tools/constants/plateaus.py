@@ -25,21 +25,13 @@ from rich.progress import Progress
 from frictioncontact.command import progress_bar
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
-from frictioncontact.fmu import Value
 from tools.bench.cases import Case, cases, expected
+from tools.bench.cost import LAWS, TOLERANCES
 from tools.bench.driver import Bench, open_bench
 from tools.project import ROOT
 
 TUNING = Path("solver") / "integrate" / "tuning.h"
 CONSTANT = re.compile(r"static const double (FC_\w+) = ([0-9.e-]+);")
-SETTINGS: Mapping[str, Mapping[str, Value]] = {
-    "Dahl": {},
-    "LuGre": {"friction.model": "LuGre", "friction.staticRatio": 1.3},
-    "ElasticPlastic": {"friction.model": "ElasticPlastic"},
-    "ElasticPlastic, static": {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.3},
-    "Dahl, load": {"friction.limit": "Load"},
-}
-TOLERANCES = (1e-3, 1e-6, 1e-8)
 OPTIONS = "-std=c11 -O1 -w -DNDEBUG -ffp-contract=off -fno-math-errno -fPIC -shared".split()
 
 
@@ -68,7 +60,7 @@ Scenes = list[tuple[Case, float, np.ndarray, np.ndarray]]  # with a start and wh
 
 def scenes(progress: Progress) -> Scenes:
     found = []
-    runs = [*product(SETTINGS.items(), cases())]
+    runs = [*product(LAWS.items(), cases())]
     for (name, setting), case in progress.track(runs, description="The reference"):
         values, start = {**case.start_values, **setting}, case.starts[-1]  # not at a whole phase
         changed = replace(case, name=f"{name}, {case.name}", start_values=values)

@@ -1,4 +1,4 @@
-"""The report's figures: panels with lines, drawn beside or below each other.
+"""Figures of the report and of the pages: panels with lines, drawn beside or below each other.
 
 Labels write subscripts as F_t or V_1; pictures and the page turn them into their own form.
 """
@@ -66,6 +66,8 @@ class Panel:
                 axis.set_minor_formatter(NullFormatter())
         for item in self.items:
             item(axes)
+
+    def add_legend(self, axes: Axes) -> None:
         labels = axes.get_legend_handles_labels()[1]
         if labels:
             columns = 1 if max(map(len, labels)) > 34 else 2
@@ -80,6 +82,8 @@ class Figure:
     panels: Sequence[Panel]
     columns: int = 2
     size: tuple[float, float] = (10.0, 4.0)  # inches
+    shared_legend: int = 0  # columns of one legend for all panels; 0: each has its own
+    options: Mapping[str, Any] = field(default_factory=dict)  # further words of style.subplots
 
     def narrow(self) -> Figure:
         """The same with a panel below the other, for a phone."""
@@ -88,8 +92,14 @@ class Figure:
     def draw(self, *paths: Path) -> None:
         """Writes the figure under each path."""
         rows = -(-len(self.panels) // self.columns)
-        drawing, grid = style.subplots(rows, self.columns, size=self.size, squeeze=False)
+        drawing, grid = style.subplots(rows, self.columns, size=self.size, squeeze=False, **self.options)
         for axes, panel in zip(grid.flat, self.panels, strict=True):
             panel.draw(axes)
-        drawing.suptitle(text(self.title), x=0.01, ha="left", fontweight="bold", fontsize=12)
+            if not self.shared_legend:
+                panel.add_legend(axes)
+        if self.shared_legend:
+            entries = grid.flat[0].get_legend_handles_labels()
+            drawing.legend(*entries, loc="outside lower center", ncols=self.shared_legend)
+        if self.title:
+            drawing.suptitle(text(self.title), x=0.01, ha="left", fontweight="bold", fontsize=12)
         style.save(drawing, *paths)
