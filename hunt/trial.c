@@ -43,7 +43,9 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     FcVariables* v = &state->variables;
     step->delta_start = v->delta;
     step->delta_y_start = v->delta_y;
-    step->slips_start = state->slips;
+    step->slips_start = fc_has_broken_away(&v->friction, (FcBristleState)state->bristle)
+                            ? fc_side((FcBristle){.delta = v->delta})
+                            : 0;
     step->v_start = v->body.v;
     step->x_start = v->body.x;
     step->force_before = v->sigma * hypot(v->delta, v->delta_y);
@@ -62,8 +64,18 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     }
     const double work = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
     const double heat = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
-    const double results[RESULTS] = {v->F_t,    v->F_y, v->F_t_mean, v->F_y_mean, start.x,           start.y,
-                                     work,      heat,   v->body.v,   v->body.x,   state->slips != 0, v->delta,
+    const double results[RESULTS] = {v->F_t,
+                                     v->F_y,
+                                     v->F_t_mean,
+                                     v->F_y_mean,
+                                     start.x,
+                                     start.y,
+                                     work,
+                                     heat,
+                                     v->body.v,
+                                     v->body.x,
+                                     fc_has_broken_away(&v->friction, (FcBristleState)state->bristle),
+                                     v->delta,
                                      v->delta_y};
     memcpy(step->result, results, sizeof results);
     *before = *state;

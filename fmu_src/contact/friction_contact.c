@@ -335,9 +335,8 @@ void fc_set_outputs(FcVariables* v, FcVector force, FcVector mean, const FcConta
 
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
     const FcVariables* v = &contact->state.variables;
-    FcBristle bristle = {.delta = v->delta, .slips = contact->state.slips, .delta_y = v->delta_y};
-    bristle.slips = fc_side_of_slip(bristle); // a host's integrator may move it to its other side
-    return bristle;
+    return (FcBristle){
+        .delta = v->delta, .state = (FcBristleState)contact->state.bristle, .delta_y = v->delta_y};
 }
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
@@ -404,8 +403,9 @@ bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message)
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
-    const FcMotion now = fc_motion(&scene, fc_regime(&scene, bristle), bristle);
+    FcBristle bristle = fc_friction_contact_reached(contact, &scene);
+    bristle.state = fc_bristle_state(&scene, bristle);
+    const FcMotion now = fc_motion(&scene, bristle);
     if (!fc_motion_is_finite(&now)) {
         return fc_fail_motion(&scene, v, message);
     }
@@ -534,7 +534,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     const FcBristle first = first_bristle(&fresh);
     v->delta = first.delta;
     v->delta_y = first.delta_y;
-    state->slips = fc_side_of_slip(first);
+    state->bristle = first.state;
     const FcScene scene = fc_friction_contact_scene_moving(&fresh, NULL);
     const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_project_onto_bound(&scene, first));
     const bool is_within = fc_is_bounded(&v->friction) && fc_size(first) <= within;
@@ -608,7 +608,7 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result,
                    const FcPast* past) {
     FcVariables* v = &state->variables;
     v->body.F += state->next_rate[FC_INPUT_F] * h;
-    state->slips = fc_side_of_slip(reached);
+    state->bristle = reached.state;
     state->past = *past;
     v->V = velocity_after(v->V, state->next_rate[FC_INPUT_V], h);
     v->V_y = velocity_after(v->V_y, state->next_rate[FC_INPUT_V_Y], h);
@@ -700,7 +700,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcScene* end = ends_elsewhere ? &moved : &scene;
     FcVector force;
-    const bool slips = result.on_bound && !fc_scene_is_separated(end);
+    const bool slips = result.state == FC_SLIPPING && !fc_scene_is_separated(end);
     const FcBristle reached =
         slips ? fc_scale_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
     if (!find_force(end, &response, &body, reached, &force, message)) {

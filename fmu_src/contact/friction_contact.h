@@ -1,4 +1,4 @@
-// One vibrating contact: its variables, its state, and its steps. Together with model/regime.h it is the
+// One vibrating contact: its variables, its state, and its steps. Together with model/motion.h it is the
 // interface of the physics to FMI.
 //
 // FcVariables has every variable of modelDescription.xml under its own name: contact.R_q is the C expression
@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 #include "message.h"
-#include "model/regime.h"
+#include "model/motion.h"
 #include "model/scene.h"
 #include "solver/body/body.h"
 #include "solver/input_jump.h"
@@ -74,8 +74,8 @@ double* fc_input_of(FcVariables* v, FcInput input);
 
 // The state of model exchange besides the variables (ode.h).
 typedef struct {
-    int regime;                   // FcRegime
     int changed;                  // a state was changed since the event began
+    int no_hole;                  // 0: no padding, so that equal states have equal bytes
     double seen_time;             // s, of the inputs that were seen last
     double seen[FC_INPUT_COUNT];  // these inputs
     double speed[FC_INPUT_COUNT]; // 1/s times their units: how fast they move
@@ -97,7 +97,7 @@ typedef struct {
         [FC_INPUT_COUNT]; // time derivatives of the inputs over the last step, 0 once an input is set again
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
-    int slips;         // the other part of the bristle's state (FcBristle); in model exchange too
+    int bristle;       // FcBristleState
     FcPast past;       // the end of the last step, from which inputs and parameters may jump
     FcOdeState ode;
 } FcFrictionState;

@@ -72,7 +72,9 @@ void fc_ode_set_time(FcFrictionContact* contact, double time) {
     contact->state.time_rest = 0.0;
 }
 
-static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.ode.regime; }
+static FcBristleState state_of(const FcFrictionContact* contact) {
+    return (FcBristleState)contact->state.bristle;
+}
 
 // The speeds of the inputs since the last step, or those in it if the time since then is too short. Returns
 // whether it is long enough.
@@ -100,8 +102,8 @@ static void see_inputs(FcFrictionContact* contact) {
 typedef struct {
     FcScene scene;
     FcPlane plane; // points to scene
-    int slips;
-    int side; // of the bound that ends its regime: 0 for either
+    FcBristleState state;
+    int side; // of the bound that ends its state: 0 for either
 } BoundView;
 
 static void update_x(FcFrictionContact* contact, BoundView* view) {
@@ -109,8 +111,8 @@ static void update_x(FcFrictionContact* contact, BoundView* view) {
     find_speeds(contact, speed);
     view->scene = fc_friction_contact_scene_moving(contact, speed);
     fc_plane_make(&view->plane, &view->scene);
-    view->slips = fc_friction_contact_bristle(contact).slips;
-    view->side = view->slips != 0 ? view->slips : (int)regime_of(contact);
+    view->state = state_of(contact);
+    view->side = view->state != FC_FREE ? fc_side(fc_friction_contact_bristle(contact)) : 0;
 }
 
 bool fc_ode_refresh(FcFrictionContact* contact, FcMessage* message) {
@@ -120,7 +122,7 @@ bool fc_ode_refresh(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const FcContactResponse response = fc_scene_contact(&scene, 0.0);
-    const FcMotion now = fc_motion(&scene, regime_of(contact), fc_friction_contact_bristle(contact));
+    const FcMotion now = fc_motion(&scene, fc_friction_contact_bristle(contact));
     if (!fc_motion_is_finite(&now)) {
         return fc_fail_motion(&scene, v, message);
     }
@@ -150,7 +152,7 @@ bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_C
             const FcDrive* drive = &now.scene.drive;
             z[0] = fc_drive_V(drive, 0.0) + SLANT * fc_drive_V_y(drive, 0.0);
         }
-        fc_regime_indicators(&now.scene, regime_of(contact), bristle, &z[1]);
+        fc_bound_indicators(&now.scene, bristle, &z[1]);
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {
@@ -176,13 +178,13 @@ typedef struct {
 // False if no bristle slips, or if the contact has opened and the stiffness is 0.
 static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     FcMessage ignored;
-    if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &ignored)) {
+    if (state_of(contact) != FC_SLIPPING || !fc_friction_contact_check(contact, &ignored)) {
         return false;
     }
     BoundView now;
     update_x(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
-    const double D = fc_scene_is_separated(&now.scene) ? 0.0 : fc_bound(&now.plane, now.slips, 0.0).D;
+    const double D = fc_scene_is_separated(&now.scene) ? 0.0 : fc_bound(&now.plane, now.state, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const double size = fc_size(bristle);
     const double onto = size > 0.0 ? D / size : 0.0;
@@ -235,12 +237,11 @@ static void begin_regime(FcFrictionContact* contact) {
     double heat;
     const FcBristle before = fc_friction_contact_bristle(contact);
     FcBristle bristle = fc_input_jump(&now.scene, state->time, &state->past, &before, &heat);
-    if (bristle.slips != 0 && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
-        bristle.slips = 0;
+    if (bristle.state != FC_FREE && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
+        bristle.state = FC_FREE;
     }
     move_to(contact, fc_delta(bristle), heat);
-    state->slips = fc_side_of_slip(bristle);
-    state->ode.regime = fc_regime(&now.scene, bristle);
+    state->bristle = fc_bristle_state(&now.scene, bristle);
     state->past = fc_past(&now.scene);
     Slip slip;
     if (slips_along(contact, &slip)) { // it is there, apart from rounding
@@ -313,7 +314,7 @@ static double first_turn(const BoundView* view, int side, double start, double p
     if (!(start < end)) { // an input may be 0 at the start
         return end;
     }
-    FcPushed of = {&view->plane, view->slips, {side, 0.0}};
+    FcPushed of = {&view->plane, view->state, {side, 0.0}};
     double evaluations = 0.0;
     double before = fc_push_at(&of, start);
     double t = start;
@@ -333,7 +334,7 @@ static double first_turn(const BoundView* view, int side, double start, double p
 static bool turns_near(const BoundView* view, int side, double delta, double t) {
     return !fc_may_stick(view->scene.friction) ||
            side * (delta + fc_drive_displacement(&view->scene.drive, 0.0, t)) >
-               NEAR_THE_BOUND * fc_bound(&view->plane, view->slips, t).D;
+               NEAR_THE_BOUND * fc_bound(&view->plane, view->state, t).D;
 }
 
 // The time [s], at most `longest`, within which an input that falls does not come to 0.

@@ -1,7 +1,7 @@
 // One contact as a differential equation with events: the physics of FMI for model exchange. The states are
 // delta, W_f, Q_f and delta_y. The inputs have their present values.
 //
-// A bounded bristle is in a regime (model/regime.h) that changes only in fc_ode_update, at an event. It
+// A bounded bristle is in a regime (model/motion.h) that changes only in fc_ode_update, at an event. It
 // slips once it is beyond its bound and pushed. It is free again once the push ends. With static friction it
 // breaks away and drops to the kinetic bound. A contact opens and closes at events, too. All events have a
 // little hysteresis, so that the rounding of an event's time starts no second event. The motion between two

@@ -38,7 +38,7 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
     state->variables.body.m = 0.0;
     state->time = 0.0;
     state->time_rest = 0.0;
-    state->slips = 0;
+    state->bristle = FC_FREE;
     memset(state->rate, 0, sizeof state->rate);
     state->next_rate_set = 0;
     return held;

@@ -11,7 +11,7 @@
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
 #include "model/extremes.h"
-#include "model/regime.h"
+#include "model/motion.h"
 
 // The variable of the reference if it has the causality; otherwise NULL, after logging the reason.
 static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
@@ -188,8 +188,7 @@ static const double MOVED_PART_OF_ORDER_4 = 5e-4;
 
 // The derivative by one variable of the rate of the bound along which the bristle slips. The variable rises, since
 // it may be at its minimum.
-static double bound_rate_by(const FcFrictionContact* contact, bool is_ode, int slips,
-                            const FcVariableInfo* info) {
+static double bound_rate_by(const FcFrictionContact* contact, bool is_ode, const FcVariableInfo* info) {
     static const double weight[] = {-25.0, 48.0, -36.0, 16.0, -3.0};
     const double change = small_change(contact, info, MOVED_PART_OF_ORDER_4);
     double sum = 0.0;
@@ -198,7 +197,7 @@ static double bound_rate_by(const FcFrictionContact* contact, bool is_ode, int s
         const FcScene scene = scene_of(&moved, is_ode);
         FcPlane plane;
         fc_plane_make(&plane, &scene);
-        sum += weight[k] * fc_bound(&plane, slips, 0.0).rate;
+        sum += weight[k] * fc_bound(&plane, FC_SLIPPING, 0.0).rate;
     }
     return change != 0.0 ? sum / (12.0 * change) : 0.0;
 }
@@ -245,11 +244,12 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
     const bool is_ode = fc_instance_is_ode(instance);
     const FcScene scene = scene_of(contact, is_ode);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const FcBristle reached = is_ode ? bristle : fc_friction_contact_reached(contact, &scene);
+    FcBristle reached = is_ode ? bristle : fc_friction_contact_reached(contact, &scene);
     FcDirection direction = direction_of(contact, along);
-    const FcRegime regime = is_ode ? (FcRegime)contact->state.ode.regime : fc_regime(&scene, reached);
+    reached.state = is_ode ? bristle.state : fc_bristle_state(&scene, reached);
+    const bool slips = reached.state == FC_SLIPPING;
     const bool has_jumped = reached.delta != bristle.delta || reached.delta_y != bristle.delta_y;
-    const bool is_led = has_jumped || (regime != FC_FREE && !is_ode); // by its bound, as inputs move that
+    const bool is_led = has_jumped || (slips && !is_ode); // by its bound, as inputs move that
     if (is_led) { // the present deflection counts by its direction alone
         const double shrinks = fc_size(reached) / fc_size(bristle);
         const FcVector n = fc_direction(fc_delta(bristle), (FcVector){1.0, 0.0});
@@ -265,11 +265,11 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
             direction.delta += change * moves.x;
             direction.delta_y += change * moves.y;
         }
-        if (change != 0.0 && regime != FC_FREE) {
-            direction.bound_rate += change * bound_rate_by(contact, is_ode, (int)regime, info);
+        if (change != 0.0 && slips) {
+            direction.bound_rate += change * bound_rate_by(contact, is_ode, info);
         }
     }
-    FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
+    FcMotion motion = fc_motion_along(&scene, reached, &direction);
     if (fc_friction_contact_sticks(contact)) { // at a jump of V it would slip
         motion.force.x = direction.V == 0.0 ? along->body.F : NAN;
     }

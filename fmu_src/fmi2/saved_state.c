@@ -243,10 +243,10 @@ static bool are_finite(const void* first, const void* end) {
 static bool is_flag(int value) { return value == 0 || value == 1; }
 
 // Only a bounded bristle slips.
-static bool regime_is_sound(const FcFrictionState* state) {
-    const int regime = state->ode.regime;
-    const bool slips = regime == FC_SLIPS_FORWARD || regime == FC_SLIPS_BACK;
-    return regime == FC_FREE || (slips && fc_is_bounded(&state->variables.friction));
+static bool bristle_is_sound(const FcFrictionState* state) {
+    const FcFriction* friction = &state->variables.friction;
+    const bool slips = state->bristle == FC_SLIPPING || state->bristle == FC_CATCHING_UP;
+    return state->bristle == FC_FREE || (slips && fc_is_bounded(friction));
 }
 
 // A mode is one that the interface has.
@@ -272,10 +272,10 @@ static const char* impossible_part(const FcSavedState* saved) {
     if (!are_finite(&friction->time, &friction->next_rate_set) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
-    if (!are_finite(&friction->past, ode) || friction->slips < -1 || friction->slips > 1) {
+    if (!are_finite(&friction->past, ode) || !bristle_is_sound(friction)) {
         return "what the last step left";
     }
-    if (!are_finite(&ode->seen_time, ode + 1) || !is_flag(ode->changed) || !regime_is_sound(friction)) {
+    if (!are_finite(&ode->seen_time, ode + 1) || !is_flag(ode->changed) || ode->no_hole != 0) {
         return "what model exchange keeps";
     }
     if (!are_finite(&experiment->start_time, experiment + 1) || !is_flag(experiment->outputs_stale) ||

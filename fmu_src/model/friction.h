@@ -33,13 +33,18 @@ typedef struct {
     double sigma_2;     // N s/m  viscous friction
 } FcFriction;
 
-// The state of a bristle. In ElasticPlastic with static friction, slips is the side along which the bristle
-// slips, 1 or -1, or 0 if it sticks. Elsewhere slips is 0. A slipping bristle may lie inside its kinetic
-// bound after an input has jumped.
+// The state of a bristle. Its transitions are in model/bound.h.
+typedef enum {
+    FC_FREE, // inside its bound: ElasticPlastic sticks, delta' = V; Dahl and LuGre relax, delta' = V - r delta
+    FC_SLIPPING, // along its bound: delta = n D
+    FC_CATCHING_UP // ElasticPlastic with static friction: it has broken away, and lies inside its kinetic bound since an
+                   // input has jumped; delta' = V
+} FcBristleState;
+
 typedef struct {
     double delta; // m
-    int slips;
-    double delta_y; // m, across; in the plane slips says only whether it slips
+    FcBristleState state;
+    double delta_y; // m, across
 } FcBristle;
 
 // The size of the deflection [m].
@@ -49,9 +54,6 @@ static inline double fc_size(FcBristle bristle) {
 
 // The side along: 1 or -1.
 static inline int fc_side(FcBristle bristle) { return bristle.delta < 0.0 ? -1 : 1; }
-
-// slips of a bristle after a motion in the plane, with the side with which a motion along a line continues.
-static inline int fc_side_of_slip(FcBristle bristle) { return bristle.slips != 0 ? fc_side(bristle) : 0; }
 
 static inline bool fc_limit_follows_load(const FcFriction* friction) {
     return friction->limit == FC_LIMIT_LOAD;
@@ -81,6 +83,11 @@ static inline bool fc_has_stribeck_curve(const FcFriction* friction) {
 // Whether the bristle remembers that it slips.
 static inline bool fc_has_static_friction(const FcFriction* friction) {
     return fc_may_stick(friction) && friction->staticRatio != 1.0;
+}
+
+// Whether the bristle has broken away, so that its bound is the kinetic one.
+static inline bool fc_has_broken_away(const FcFriction* friction, FcBristleState state) {
+    return state != FC_FREE && fc_has_static_friction(friction);
 }
 
 // Static over Coulomb friction; 1 in laws without static friction.

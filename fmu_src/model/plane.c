@@ -42,23 +42,20 @@ static double log_curve_rate(const FcPlane* plane, const FcPlaneCoefficients* at
     return fc_stribeck_slope(friction, at->speed) / fc_stribeck(friction, at->speed) * speed_rate;
 }
 
-static bool is_kinetic(const FcPlane* plane, int slips) {
-    return slips != 0 && fc_has_static_friction(plane->scene->friction);
+static double limit_of_bound(const FcPlane* plane, const FcPlaneCoefficients* at, FcBristleState state) {
+    return fc_has_broken_away(plane->scene->friction, state) ? at->limit : at->static_limit;
 }
 
-static double limit_of_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips) {
-    return is_kinetic(plane, slips) ? at->limit : at->static_limit;
+double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, FcBristleState state) {
+    return limit_of_bound(plane, at, state) / at->sigma;
 }
 
-double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int slips) {
-    return limit_of_bound(plane, at, slips) / at->sigma;
-}
-
-FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
-                            FcPhase at_t) {
+FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, FcBristleState state,
+                            double t, FcPhase at_t) {
     const FcLogRates rates = fc_scene_log_rates(&plane->of_static_limit, t, at_t);
-    const double by_curve = is_kinetic(plane, slips) ? log_curve_rate(plane, at, t, at_t) : 0.0;
-    const double limit = limit_of_bound(plane, at, slips);
+    const double by_curve =
+        fc_has_broken_away(plane->scene->friction, state) ? log_curve_rate(plane, at, t, at_t) : 0.0;
+    const double limit = limit_of_bound(plane, at, state);
     const double D = limit / at->sigma;
     return (FcPlaneBound){limit, D, D * (rates.ratio + by_curve), rates.sigma};
 }
@@ -68,16 +65,16 @@ double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const 
     return fc_product(n, at->V) - fc_plane_relaxation(plane, at) * bound->D - bound->rate;
 }
 
-FcPlaneBound fc_bound(const FcPlane* plane, int slips, double t) {
+FcPlaneBound fc_bound(const FcPlane* plane, FcBristleState state, double t) {
     const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
-    return fc_plane_bound(plane, &at, slips, t, phase);
+    return fc_plane_bound(plane, &at, state, t, phase);
 }
 
 double fc_push_at(void* context, double t) {
     const FcPushed* of = context;
     const FcPhase phase = fc_drive_phase(&of->plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(of->plane, t, phase);
-    const FcPlaneBound bound = fc_plane_bound(of->plane, &at, of->slips, t, phase);
+    const FcPlaneBound bound = fc_plane_bound(of->plane, &at, of->state, t, phase);
     return fc_plane_push(of->plane, &at, &bound, of->n);
 }

@@ -67,8 +67,8 @@ static inline FcVector fc_plane_coulomb(const FcPlaneCoefficients* at) {
     return (FcVector){over_speed * at->V.x, over_speed * at->V.y};
 }
 
-// The radius D [m] of the bound of a bristle that slips or does not.
-double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int slips);
+// The radius D [m] of the bound of a bristle in that state.
+double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, FcBristleState state);
 
 // The bound with its rate, and the rate of ln sigma.
 typedef struct {
@@ -77,9 +77,9 @@ typedef struct {
     double rate;           // m/s
     double log_sigma_rate; // 1/s
 } FcPlaneBound;
-FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
-                            FcPhase at_t);
-FcPlaneBound fc_bound(const FcPlane* plane, int slips, double t); // at a local time [s]
+FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, FcBristleState state,
+                            double t, FcPhase at_t);
+FcPlaneBound fc_bound(const FcPlane* plane, FcBristleState state, double t); // at a local time [s]
 
 // The push: the velocity [m/s] at which a bristle on its bound, in the direction n (|n| = 1), would leave the
 // bound outwards. The bristle slips while the push is positive.
@@ -89,7 +89,7 @@ double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const 
 // The push as a function of time, for fc_root_between: context is an FcPushed.
 typedef struct {
     const FcPlane* plane;
-    int slips;
+    FcBristleState state;
     FcVector n;
 } FcPushed;
 double fc_push_at(void* context, double t);

@@ -54,6 +54,5 @@ FcBristle fc_steady_sliding(const FcScene* scene, FcBristle from, FcVector* forc
     }
     const FcBristle end = {.delta = force->x / at.sigma, .delta_y = force->y / at.sigma};
     const bool slips = fc_has_static_friction(scene->friction);
-    const int side = fc_is_planar(scene, from) ? 1 : fc_side(end);
-    return (FcBristle){.delta = end.delta, .slips = slips ? side : 0, .delta_y = end.delta_y};
+    return (FcBristle){.delta = end.delta, .state = slips ? FC_SLIPPING : FC_FREE, .delta_y = end.delta_y};
 }

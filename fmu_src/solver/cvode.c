@@ -1,4 +1,4 @@
-// SUNDIALS CVODE: variable-order BDF of the contact as model exchange states it (model/regime.h): its motion,
+// SUNDIALS CVODE: variable-order BDF of the contact as model exchange states it (model/motion.h): its motion,
 // whose derivatives are the Jacobian, and the events that end a regime.
 //
 // CVODE is started anew at every event and at the reversals of V, in a time that begins at 0: it never steps
@@ -25,7 +25,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include "model/constants.h"
-#include "model/regime.h"
+#include "model/motion.h"
 #include "model/root.h"
 #include "solver/periods/segments.h"
 
@@ -58,8 +58,7 @@ struct FcCvode {
     FcScene scene; // without damping, which is not a part of the result
     FcFriction friction;
     double start; // s, local time at which the regime starts; CVODE's time is 0 there
-    FcRegime regime;
-    int slips;
+    FcBristleState state;
     double evaluations; // of the motion
     char reason[160];   // CVODE's last error message
     // The mass at the start of the step, the damping, and the largest acceleration [m/s2].
@@ -115,7 +114,7 @@ static FcScene scene_at(const FcCvode* solver, double tau, N_Vector y, double* i
 }
 
 static FcBristle bristle_of(const FcCvode* solver, N_Vector y) {
-    return (FcBristle){.delta = NV_Ith_S(y, DELTA), .slips = solver->slips, .delta_y = NV_Ith_S(y, DELTA_Y)};
+    return (FcBristle){.delta = NV_Ith_S(y, DELTA), .state = solver->state, .delta_y = NV_Ith_S(y, DELTA_Y)};
 }
 
 // Of a motion, or of its derivative by the deflection.
@@ -131,29 +130,28 @@ static void set_rates(const FcScene* now, const FcMotion* motion, double rate[MA
 }
 
 // The bound of a bristle that slips moves with w.
-static void add_acceleration(const FcCvode* solver, double t, FcRegime regime, FcBristle bristle,
-                             FcScene* scene) {
-    if (has_body(solver) && regime != FC_FREE && fc_has_static_friction(scene->friction)) {
+static void add_acceleration(const FcCvode* solver, double t, FcBristle bristle, FcScene* scene) {
+    if (has_body(solver) && bristle.state == FC_SLIPPING && fc_has_static_friction(scene->friction)) {
         FcScene damped = *scene;
         damped.friction = solver->damped;
         const double F = solver->body.F.value + solver->body.F.rate * t;
-        scene->drive.V.rate += fc_body_acceleration(&damped, regime, bristle, &solver->body, F);
+        scene->drive.V.rate += fc_body_acceleration(&damped, bristle, &solver->body, F);
     }
 }
 
 // m and the slope of F_t over the rate of w, of m, above 0 while w follows smoothly.
-static double inertia_of(const FcCvode* solver, FcRegime regime, FcBristle bristle, const FcScene* scene) {
+static double inertia_of(const FcCvode* solver, FcBristle bristle, const FcScene* scene) {
     FcScene damped = *scene;
     damped.friction = solver->damped;
-    return fc_body_inertia(&damped, regime, bristle, &solver->body) / solver->body.m - FC_MIN_INERTIA;
+    return fc_body_inertia(&damped, bristle, &solver->body) / solver->body.m - FC_MIN_INERTIA;
 }
 
 static int right_hand_side(realtype tau, N_Vector y, N_Vector rates, void* user) {
     FcCvode* solver = user;
     double impulse;
     FcScene now = scene_at(solver, tau, y, &impulse);
-    add_acceleration(solver, solver->start + tau, solver->regime, bristle_of(solver, y), &now);
-    const FcMotion motion = fc_motion(&now, solver->regime, bristle_of(solver, y));
+    add_acceleration(solver, solver->start + tau, bristle_of(solver, y), &now);
+    const FcMotion motion = fc_motion(&now, bristle_of(solver, y));
     solver->evaluations += 1.0;
     double* rate = NV_DATA_S(rates);
     set_rates(&now, &motion, rate);
@@ -174,12 +172,12 @@ static void jacobian_of_body(const FcCvode* solver, const FcScene* now, N_Vector
     const double m = solver->body.m;
     const double w = fc_drive_V(&now->drive, 0.0);
     const FcBristle bristle = bristle_of(solver, y);
-    const double delta_rate = fc_motion(now, solver->regime, bristle).rates.delta;
+    const double delta_rate = fc_motion(now, bristle).rates.delta;
     const int of[] = {DELTA, IMPULSE, POSITION};
     const FcDirection along[] = {
         {.delta = 1.0, .V = -damped->sigma_1 / m}, {.V = -1.0 / m}, {.V = -damped->sigma_2 / m}};
     for (int k = 0; k < 3; k++) {
-        const FcMotion by = fc_motion_along(now, solver->regime, bristle, &along[k]);
+        const FcMotion by = fc_motion_along(now, bristle, &along[k]);
         double* column = SM_COLUMN_D(J, of[k]);
         set_rates(now, &by, column);
         const double damping = damped->sigma_1 * (by.rates.delta * w + delta_rate * along[k].V) +
@@ -202,7 +200,7 @@ static int jacobian(realtype tau, N_Vector y, N_Vector rates, SUNMatrix J, void*
     }
     const FcDirection along[] = {{.delta = 1.0}, {.delta_y = 1.0}};
     for (int k = DELTA; k <= DELTA_Y; k++) {
-        const FcMotion by = fc_motion_along(&now, solver->regime, bristle_of(solver, y), &along[k]);
+        const FcMotion by = fc_motion_along(&now, bristle_of(solver, y), &along[k]);
         set_rates(&now, &by, SM_COLUMN_D(J, k));
     }
     return 0;
@@ -215,10 +213,10 @@ static int indicators(realtype tau, N_Vector y, realtype* z, void* user) {
     const FcBristle bristle = bristle_of(solver, y);
     if (has_body(solver)) {
         z[REVERSAL] = fc_may_stick(solver->scene.friction) ? 1.0 : fc_drive_V(&now.drive, 0.0);
-        z[JUMP] = inertia_of(solver, solver->regime, bristle, &now);
-        add_acceleration(solver, solver->start + tau, solver->regime, bristle, &now);
+        z[JUMP] = inertia_of(solver, bristle, &now);
+        add_acceleration(solver, solver->start + tau, bristle, &now);
     }
-    fc_regime_indicators(&now, solver->regime, bristle, &z[OF_REGIME]);
+    fc_bound_indicators(&now, bristle, &z[OF_REGIME]);
     return 0;
 }
 
@@ -348,8 +346,9 @@ static FcScene scene_with(FcCvode* solver, FcStepResult* now) {
     put(solver, now);
     double impulse;
     FcScene scene = scene_at(solver, 0.0, solver->y, &impulse);
-    add_acceleration(solver, solver->start, (FcRegime)fc_side(fc_bristle_of(now)), fc_bristle_of(now),
-                     &scene);
+    FcBristle slipping = fc_bristle_of(now); // if it slips
+    slipping.state = FC_SLIPPING;
+    add_acceleration(solver, solver->start, slipping, &scene);
     return scene;
 }
 
@@ -360,19 +359,20 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     if (has_body(solver) && fc_has_static_friction(scene.friction)) {
         // What it does then is known after the drop, since it moves w and by the force its rate.
         const double reached = fc_size(fc_project_onto_bound(&scene, fc_bristle_of(now)));
-        const bool breaks_away =
-            now->slips == 0 && reached < (1.0 - 2.0 * FC_ROUNDING_OF_BOUND) * fc_size(fc_bristle_of(now));
-        if (breaks_away || inertia_of(solver, solver->regime, fc_bristle_of(now), &scene) <= 0.0) {
+        FcBristle before = fc_bristle_of(now);
+        before.state = solver->state;
+        const bool breaks_away = !fc_has_broken_away(scene.friction, now->state) &&
+                                 reached < (1.0 - 2.0 * FC_ROUNDING_OF_BOUND) * fc_size(fc_bristle_of(now));
+        if (breaks_away || inertia_of(solver, before, &scene) <= 0.0) {
             fc_body_drop(&scene, solver->body.m, solver->damped->sigma_1, now);
             scene = scene_with(solver, now);
         }
     }
     fc_project_result(&scene, now);
-    const bool slips = now->slips != 0 && fc_push(&scene, fc_bristle_of(now)) > 0.0;
-    now->slips = slips ? now->slips : 0; // at the event of a push of 0
-    solver->slips = now->slips;
-    solver->regime = fc_regime(&scene, fc_bristle_of(now));
-    now->on_bound = solver->regime != FC_FREE;
+    if (!(fc_push(&scene, fc_bristle_of(now)) > 0.0)) { // at the event of a push of 0
+        now->state = FC_FREE;
+    }
+    now->state = solver->state = fc_bristle_state(&scene, fc_bristle_of(now));
     put(solver, now);
 }
 
@@ -415,7 +415,7 @@ static bool integrate(FcCvode* solver, const FcScene* scene, const FcSolverOptio
     solver->scene = *scene;
     solver->scene.friction = &solver->friction;
     solver->evaluations = 0.0;
-    solver->regime = FC_FREE;
+    solver->state = FC_FREE;
     set_allowed(solver, scene, options, h);
     FcStepResult now = *result;
     for (*t = 0.0; *t < h;) {

@@ -115,7 +115,7 @@ static Ramp ramp_between(const FcScene* scene, const FcPast* past, const FcPast*
     ramp.along = past->V * bristle->delta + past->V_y * bristle->delta_y;
     ramp.along_change = ramp.V * bristle->delta + ramp.V_y * bristle->delta_y;
     ramp.start = ramp.delta = fc_size(*bristle);
-    ramp.slips = bristle->slips != 0;
+    ramp.slips = bristle->state != FC_FREE;
     return ramp;
 }
 
@@ -255,7 +255,7 @@ static double stick_from(Ramp* ramp, double s) {
     if (s < 1.0) {
         ramp->slips = true;
         const Place at = at_place(ramp, s);
-        ramp->heat += 0.5 * at.sigma * (ramp->delta - at.D) * (ramp->delta + at.D);
+        ramp->heat += fc_drop_heat(at.sigma, ramp->delta, at.D);
         ramp->delta = at.D;
     }
     return s;
@@ -294,15 +294,14 @@ FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, cons
         // If nothing jumps, an error_ratio is the last step's, within its tolerance. An open contact has no stiffness, or a
         // constant one.
         if (end < delta && !same) {
-            *heat = 0.5 * fc_scene_contact(scene, 0.0).sigma * (delta - end) * (delta + end);
+            *heat = fc_drop_heat(fc_scene_contact(scene, 0.0).sigma, delta, end);
         }
         return reached;
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;
     Ramp ramp = ramp_between(scene, past, &now, &bristle);
-    const int slips = fc_is_planar(scene, bristle) ? 1 : side;
     if (drops(&ramp)) {
-        bristle.slips = slips;
+        bristle.state = FC_SLIPPING;
         ramp.pushed = fc_push(scene, bristle) > 0.0;
         if (past->ratio == 1.0) { // then no state tells whether it slips
             ramp.slips = ramp.along > 0.0 && delta >= (1.0 - FC_INSIDE_BOUND) * at_place(&ramp, 0.0).D;
@@ -313,7 +312,7 @@ FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, cons
         s = drops(&ramp) && !ramp.slips ? stick_from(&ramp, s) : slip_from(&ramp, s);
     }
     *heat = ramp.heat;
-    bristle.slips = ramp.slips && fc_has_static_friction(scene->friction) ? slips : 0;
+    bristle.state = ramp.slips && fc_has_static_friction(scene->friction) ? FC_SLIPPING : FC_FREE;
     if (bristle.delta_y == 0.0) {
         bristle.delta = side * ramp.delta;
     } else {

@@ -14,7 +14,7 @@
 #ifndef FC_SOLVER_INPUT_JUMP_H
 #define FC_SOLVER_INPUT_JUMP_H
 
-#include "model/regime.h"
+#include "model/bound.h"
 
 // The inputs and parameters at the end of a step, with its vibration.
 typedef struct {

@@ -2,7 +2,7 @@
 
 #include <assert.h>
 
-#include "model/regime.h"
+#include "model/bound.h"
 #include "solver/constant_step.h"
 #include "solver/periods/periods.h"
 

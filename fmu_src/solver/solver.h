@@ -44,10 +44,10 @@ static inline double fc_force_beside_damping(double largest, double damping, dou
 }
 
 typedef struct {
-    double delta;       // m     deflection at the end of the step
-    int slips;          //       the other part of the bristle's state (FcBristle)
-    bool on_bound;      //       the march has ended in a slip along the bound
-    int meetings;       //       how often the bristle met its bound, slipping along it at the start included
+    double delta; // m     deflection at the end of the step
+    FcBristleState
+        state;    //    and that of the bristle; FC_SLIPPING if the step has ended in a slip along the bound
+    int meetings; //       how often the bristle met its bound, slipping along it at the start included
     double slip_time;   // s     into the interval, a time at which the bristle slipped along a bound, and
     int slip_side;      //       the side of that bound; both without meaning if it has not slipped
     double lost;        // m     deflection lost by opening contacts, which is not motion
@@ -64,13 +64,13 @@ typedef struct {
 } FcStepResult;
 
 static inline FcBristle fc_bristle_of(const FcStepResult* result) {
-    return (FcBristle){.delta = result->delta, .slips = result->slips, .delta_y = result->delta_y};
+    return (FcBristle){.delta = result->delta, .state = result->state, .delta_y = result->delta_y};
 }
 
 // The result with which a step begins, after so many evaluations.
 static inline void fc_result_start(FcStepResult* result, FcBristle start, double evaluations) {
     *result = (FcStepResult){
-        .delta = start.delta, .slips = start.slips, .evaluations = evaluations, .delta_y = start.delta_y};
+        .delta = start.delta, .state = start.state, .evaluations = evaluations, .delta_y = start.delta_y};
 }
 
 // The largest work of one communication step, one settled state or one derivative of a settled mean, in evaluations: 0.2 to

@@ -123,13 +123,13 @@ static void the_acceleration_is_that_of_its_force(void) {
     const FcBody body = {.m = M, .F = {80.0, 0.0}, .v = 0.03};
     FcScene seen = scene;
     seen.drive.V.value += body.v;
-    const FcBristle bristle = fc_scale_onto_bound(&seen, (FcBristle){.delta = 2e-5, .slips = 1});
+    const FcBristle bristle = fc_scale_onto_bound(&seen, (FcBristle){.delta = 2e-5, .state = FC_SLIPPING});
     const FcScene moving = fc_body_scene(&scene, &body, bristle);
     const double a = moving.drive.V.rate - scene.drive.V.rate;
-    const double F_t = fc_motion(&moving, FC_SLIPS_FORWARD, bristle).force.x;
+    const double F_t = fc_motion(&moving, bristle).force.x;
     CHECK_WITHIN(M * a, body.F.value - F_t, 1e-11);
-    CHECK(fabs(F_t - fc_motion(&seen, FC_SLIPS_FORWARD, bristle).force.x) > 1e-3);
-    CHECK(fc_body_inertia(&seen, FC_SLIPS_FORWARD, bristle, &body) < M);
+    CHECK(fabs(F_t - fc_motion(&seen, bristle).force.x) > 1e-3);
+    CHECK(fc_body_inertia(&seen, bristle, &body) < M);
 }
 
 int main(void) {

@@ -36,9 +36,9 @@ static FcSavedState full_state(void) {
         memcpy((char*)friction + at, &number, sizeof number);
     }
     friction->next_rate_set = 1;
-    friction->slips = -1;
-    friction->ode.regime = 1;
+    friction->bristle = FC_SLIPPING;
     friction->ode.changed = 0;
+    friction->ode.no_hole = 0;
     saved.experiment = (FcExperiment){.interface = FC_CO_SIMULATION,
                                       .mode = FC_STEP_COMPLETE,
                                       .tolerance_is_set = 1,
@@ -184,18 +184,17 @@ static void impossible_numbers_are_refused(fmi2Component c) {
     CHECK(!is_read_with(c, experiment + offsetof(FcExperiment, no_hole), &one, sizeof one));
     const struct {
         size_t at;
-        int least;
-    } flags[] = {{friction + offsetof(FcFrictionState, next_rate_set), 0},
-                 {friction + offsetof(FcFrictionState, ode.changed), 0},
-                 {friction + offsetof(FcFrictionState, ode.regime), -1},
-                 {friction + offsetof(FcFrictionState, slips), -1},
-                 {experiment + offsetof(FcExperiment, outputs_stale), 0},
-                 {experiment + offsetof(FcExperiment, tolerance_is_set), 0},
-                 {experiment + offsetof(FcExperiment, has_stop_time), 0}};
+        int largest;
+    } flags[] = {{friction + offsetof(FcFrictionState, next_rate_set), 1},
+                 {friction + offsetof(FcFrictionState, ode.changed), 1},
+                 {friction + offsetof(FcFrictionState, bristle), FC_CATCHING_UP},
+                 {experiment + offsetof(FcExperiment, outputs_stale), 1},
+                 {experiment + offsetof(FcExperiment, tolerance_is_set), 1},
+                 {experiment + offsetof(FcExperiment, has_stop_time), 1}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
-        for (int value = -2; value <= 2; value++) {
+        for (int value = -2; value <= 3; value++) {
             CHECK(is_read_with(c, flags[i].at, &value, sizeof value) ==
-                  (value >= flags[i].least && value <= 1));
+                  (value >= 0 && value <= flags[i].largest));
         }
     }
 }

@@ -2,7 +2,7 @@
 #include "model/scene.h"
 
 #include "check.h"
-#include "model/regime.h"
+#include "model/motion.h"
 #include "table_1.h"
 
 static const double F = 20e3; // Hz

@@ -5,36 +5,36 @@
 
 #include "model/constants.h"
 #include "model/extremes.h"
-#include "model/regime.h"
+#include "model/motion.h"
 #include "model/root.h"
 #include "solver/body/body_march.h"
 #include "solver/periods/segments.h"
 
-double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body) {
+double fc_body_inertia(const FcScene* scene, FcBristle bristle, const FcBody* body) {
     assert(body->m > 0.0);
-    if (regime == FC_FREE || !fc_has_static_friction(scene->friction) || scene->friction->sigma_1 == 0.0) {
+    if (bristle.state != FC_SLIPPING || !fc_has_static_friction(scene->friction) ||
+        scene->friction->sigma_1 == 0.0) {
         return body->m;
     }
     const double change = 1.0 + fabs(scene->drive.V.rate); // F_t is linear in the rate of w
     FcScene faster = *scene;
     faster.drive.V.rate += change;
-    const double F_t = fc_motion(scene, regime, bristle).force.x;
-    return body->m + (fc_motion(&faster, regime, bristle).force.x - F_t) / change;
+    const double F_t = fc_motion(scene, bristle).force.x;
+    return body->m + (fc_motion(&faster, bristle).force.x - F_t) / change;
 }
 
-double fc_body_acceleration(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body,
-                            double F) {
-    const double inertia = fc_body_inertia(scene, regime, bristle, body);
-    return (F - fc_motion(scene, regime, bristle).force.x) / fc_max(inertia, FC_MIN_INERTIA * body->m);
+double fc_body_acceleration(const FcScene* scene, FcBristle bristle, const FcBody* body, double F) {
+    const double inertia = fc_body_inertia(scene, bristle, body);
+    return (F - fc_motion(scene, bristle).force.x) / fc_max(inertia, FC_MIN_INERTIA * body->m);
 }
 
 FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle) {
     FcScene seen = *scene;
     seen.drive.V.value += body->v;
-    if (fc_has_bristle(seen.friction)) {
-        const bool slips = bristle.slips != 0;
-        const FcRegime regime = slips ? (FcRegime)fc_side(bristle) : fc_regime(&seen, bristle);
-        seen.drive.V.rate += fc_body_acceleration(&seen, regime, bristle, body, body->F.value);
+    if fc_has_bristle((seen.friction)) {
+        const bool slips = fc_has_broken_away(seen.friction, bristle.state);
+        bristle.state = slips ? FC_SLIPPING : fc_bristle_state(&seen, bristle);
+        seen.drive.V.rate += fc_body_acceleration(&seen, bristle, body, body->F.value);
     }
     return seen;
 }
@@ -75,9 +75,9 @@ void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* 
             const double w = fc_drive_V(&scene->drive, 0.0) + 0.5 * of.per_delta * (of.first - end);
             const double damping = -side * sigma_1 * (of.first - end) * w;
             now->work += damping;
-            now->heat += damping + 0.5 * at.sigma * (of.first - end) * (of.first + end);
+            now->heat += damping + fc_drop_heat(at.sigma, of.first, end);
             now->delta = side * end;
-            now->slips = (int)side;
+            now->state = FC_SLIPPING;
             return;
         }
     }

@@ -8,7 +8,7 @@
 #ifndef FC_SOLVER_BODY_BODY_H
 #define FC_SOLVER_BODY_BODY_H
 
-#include "model/regime.h"
+#include "model/motion.h"
 #include "solver/method.h"
 
 typedef struct {
@@ -38,11 +38,10 @@ static inline void fc_body_move(FcBody* body, double h, double impulse) {
 // m less what the damper takes of it [kg]: -dF_t/dw' where the kinetic bound follows w. At 0 w would jump, and before, at
 // that part of m, it counts as having jumped. Chosen empirically: half of it costs evaluations.
 static const double FC_MIN_INERTIA = 1e-3;
-double fc_body_inertia(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body);
+double fc_body_inertia(const FcScene* scene, FcBristle bristle, const FcBody* body);
 
 // The acceleration [m/s2] under the force F [N] in a scene whose V contains v: the rate of the kinetic bound moves with it.
-double fc_body_acceleration(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcBody* body,
-                            double F);
+double fc_body_acceleration(const FcScene* scene, FcBristle bristle, const FcBody* body, double F);
 
 // The scene as the bristle sees it at its start: V contains v, and with a bristle the rate of V contains v'.
 FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle);

@@ -4,7 +4,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "model/regime.h"
+#include "model/motion.h"
 #include "solver/body/body_stuck.h"
 #include "solver/integrate/dense_output.h"
 #include "solver/integrate/march.h"
@@ -445,9 +445,8 @@ static void begin_slip(March* march) {
     } else {
         const double over = fc_may_stick(friction) ? fc_static_over_limit(friction, w) : 1.0;
         const double D = at.static_limit / over / at.sigma;
-        const double lost = fabs(before) - D;
         march->sums.delta = side * D;
-        march->sums.heat += 0.5 * at.sigma * lost * (fabs(before) + D);
+        march->sums.heat += fc_drop_heat(at.sigma, fabs(before), D);
     }
     march->sums.impulse += friction->sigma_1 * (march->sums.delta - before);
     march->sums.meetings++;
@@ -645,10 +644,10 @@ static void begin(March* march, FcBristle bristle) {
     const double w_rate =
         fc_body_rates(march->plane, march->body, &march->at, 0.0, phase, at.sigma, at.static_limit).w;
     begin_free(march, w, w_rate);
-    const int side = bristle.slips != 0 ? fc_side(bristle) : bristle.delta < 0.0 ? -1 : 1;
+    const int side = fc_side(bristle);
     const bool touches = march->is_bounded && !fc_has_static_friction(friction_of(march)) &&
                          fabs(bristle.delta) * at.sigma >= at.static_limit * (1.0 - FC_ROUNDING_OF_BOUND);
-    if (bristle.slips != 0 || touches) {
+    if (fc_has_broken_away(friction_of(march), bristle.state) || touches) {
         march->at.kind = FC_SLIPS;
         march->at.side = side;
         const FcBodyRates rate =
@@ -679,10 +678,8 @@ bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, do
         return fc_body_refuse(scene, body, h, "it needs too many evaluations; use smaller steps", message);
     }
     assert(march.t == h);
-    const bool slips = march.at.kind == FC_SLIPS;
     result->delta = march.at.delta;
-    result->slips = slips && fc_has_static_friction(scene->friction) ? march.at.side : 0;
-    result->on_bound = slips;
+    result->state = march.at.kind == FC_SLIPS ? FC_SLIPPING : FC_FREE;
     result->meetings += march.sums.meetings;
     result->impulse += march.sums.impulse;
     result->work += march.sums.work;

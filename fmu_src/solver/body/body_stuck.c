@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "model/extremes.h"
-#include "model/regime.h"
+#include "model/motion.h"
 
 // The largest |Z|, over the radius of the bound. Chosen empirically: ten times of it loses a digit near resonance, where panels
 // keep it; a tenth costs time there.

@@ -156,7 +156,7 @@ bool fc_take_closed_form(FcIntegrator* integrator) {
     case FC_SLIPS:
         return fc_may_stick(friction) && slips_surely(integrator);
     case FC_STICKS:
-        if (has_constant_coefficients && integrator->slips == 0) {
+        if (has_constant_coefficients && integrator->state == FC_FREE) {
             stick_to_meeting(integrator);
             return true;
         }

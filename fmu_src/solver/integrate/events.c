@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "model/bound.h"
 #include "model/extremes.h"
-#include "model/regime.h"
 #include "model/root.h"
 #include "solver/integrate/dense_output.h"
 #include "solver/integrate/tuning.h"
@@ -36,7 +36,7 @@ static double rounding_of_push(const FcIntegrator* integrator, const double push
 bool fc_is_unloading(const FcIntegrator* integrator, FcVector n) {
     const FcInterval* interval = integrator->interval;
     const double t = integrator->at.t;
-    FcPushed pushed = {integrator->plane, 1, n};
+    FcPushed pushed = {integrator->plane, FC_SLIPPING, n};
     const double push = fc_push_at(&pushed, t);
     if (fabs(push) > ROUNDING_OF_PUSH * fc_largest_push(integrator)) {
         return push < 0.0;
@@ -54,7 +54,7 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
     const double t = integrator->at.t;
     const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
-    const FcPlaneBound held = fc_plane_bound(plane, &at, integrator->slips, t, phase);
+    const FcPlaneBound held = fc_plane_bound(plane, &at, integrator->state, t, phase);
     const FcVector delta = fc_integrator_delta(integrator);
     const FcVector n = direction(delta);
     const double push = fc_plane_push(plane, &at, &held, n);
@@ -63,14 +63,13 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
     }
     // The energy that it loses is heat, also that of its small error_ratio over the bound.
     const double size = hypot(delta.x, delta.y);
-    const double D = fc_plane_radius(plane, &at, 1);
-    integrator->heat += 0.5 * at.sigma * (size - D) * (size + D);
+    const double D = fc_plane_radius(plane, &at, FC_SLIPPING);
+    integrator->heat += fc_drop_heat(at.sigma, size, D);
     integrator->drag += (D - size) * fc_product(n, at.V);
     fc_set_delta(integrator, (FcVector){D * n.x, D * n.y});
     integrator->meetings++;
-    integrator->touches = integrator->slips != 0 || !fc_has_static_friction(plane->scene->friction);
-    integrator->is_slipping = surely || !fc_is_unloading(integrator, n);
-    integrator->slips = integrator->is_slipping;
+    integrator->touches = integrator->state != FC_FREE || !fc_has_static_friction(plane->scene->friction);
+    integrator->state = surely || !fc_is_unloading(integrator, n) ? FC_SLIPPING : FC_FREE;
     integrator->h = 0.0;
     // In the plane its direction relaxes.
     const double turning = at.sigma * D * fabs(fc_across(n, at.V));
@@ -82,8 +81,8 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
 }
 
 void fc_end_slip(FcIntegrator* integrator) {
-    integrator->is_slipping = integrator->touches = false;
-    integrator->slips = 0;
+    integrator->touches = false;
+    integrator->state = FC_FREE;
 }
 
 // ---- a free bristle ----
@@ -92,7 +91,7 @@ void fc_end_slip(FcIntegrator* integrator) {
 static void find_to_bound(const FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel) {
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
-        const double D = fc_plane_radius(integrator->plane, &at, integrator->slips);
+        const double D = fc_plane_radius(integrator->plane, &at, integrator->state);
         panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
     }
 }
@@ -128,7 +127,7 @@ static double top_at_bound(const FcIntegrator* integrator, const FcNodes* nodes,
     bool falls = false; // a top is not before a point that is higher than all before it
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
-        const double D = fc_plane_radius(integrator->plane, &at, integrator->slips);
+        const double D = fc_plane_radius(integrator->plane, &at, integrator->state);
         is_near = is_near || panel->to_bound[i] > -0.5 * D * D;
         falls = falls || (i < STAGES && panel->to_bound[i] < panel->to_bound[i > 0 ? i - 1 : START]);
     }
@@ -139,7 +138,7 @@ static double top_at_bound(const FcIntegrator* integrator, const FcNodes* nodes,
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
         const FcPlaneBound held =
-            fc_plane_bound(integrator->plane, &at, integrator->slips, nodes->t[i], nodes->phase[i]);
+            fc_plane_bound(integrator->plane, &at, integrator->state, nodes->t[i], nodes->phase[i]);
         const FcVector n = {panel->delta[i].x / held.D, panel->delta[i].y / held.D};
         recedes[i] = -fc_plane_push(integrator->plane, &at, &held, n);
     }
@@ -158,7 +157,7 @@ static double stuck_to_bound(void* context, double u) {
         delta.y += fc_drive_displacement(&integrator->across, integrator->at.t, t);
     }
     const FcPlaneCoefficients at = fc_coefficients_at(integrator, t);
-    const double D = fc_plane_radius(integrator->plane, &at, integrator->slips);
+    const double D = fc_plane_radius(integrator->plane, &at, integrator->state);
     return fc_product(delta, delta) - D * D;
 }
 
@@ -209,7 +208,7 @@ static bool catches_up(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel,
         for (int i = 0; i < POINTS; i++) {
             const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
             const FcPlaneBound bound =
-                fc_plane_bound(integrator->plane, &at, 1, nodes->t[i], nodes->phase[i]);
+                fc_plane_bound(integrator->plane, &at, FC_SLIPPING, nodes->t[i], nodes->phase[i]);
             push[i] = fc_plane_push(integrator->plane, &at, &bound, direction(panel->delta[i]));
         }
         const double ends = end_of_push(integrator, push);
@@ -234,12 +233,12 @@ static bool cut_at_meeting(FcIntegrator* integrator, FcNodes* nodes, FcPanel* pa
     for (int cuts = 0; cuts < MAX_CUTS; cuts++) {
         find_to_bound(integrator, nodes, panel);
         const FcPlaneCoefficients begin = fc_nodes_at(nodes, START);
-        const double D_begin = fc_plane_radius(integrator->plane, &begin, integrator->slips);
+        const double D_begin = fc_plane_radius(integrator->plane, &begin, integrator->state);
         if (integrator->touches && panel->to_bound[START] <= 4.0 * FC_ROUNDING_OF_BOUND * D_begin * D_begin) {
             panel->to_bound[START] = fc_min(panel->to_bound[START], 0.0); // by rounding it may begin beyond
         }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
-        *over = close_to_bound(integrator, fc_plane_radius(integrator->plane, &end, integrator->slips));
+        *over = close_to_bound(integrator, fc_plane_radius(integrator->plane, &end, integrator->state));
         const double meets = is_exact ? 2.0 : FC_FASTEST(fc_first_upcrossing)(panel->to_bound, *over);
         const double top = meets > 1.0 ? top_at_bound(integrator, nodes, panel) : 2.0;
         if (meets > 1.0 && top > 1.0) {
@@ -254,8 +253,9 @@ static bool cut_at_meeting(FcIntegrator* integrator, FcNodes* nodes, FcPanel* pa
 }
 
 void fc_free_until_event(FcIntegrator* integrator) {
-    assert(!integrator->is_slipping);
-    if (integrator->slips != 0 && fc_is_unloading(integrator, direction(fc_integrator_delta(integrator)))) {
+    assert(integrator->state != FC_SLIPPING);
+    if (integrator->state == FC_CATCHING_UP &&
+        fc_is_unloading(integrator, direction(fc_integrator_delta(integrator)))) {
         fc_end_slip(integrator);
         return;
     }
@@ -269,7 +269,7 @@ void fc_free_until_event(FcIntegrator* integrator) {
         fc_accept_panel(integrator, &nodes, &panel, h);
         return;
     }
-    const bool gives_up = integrator->slips != 0 && catches_up(integrator, &nodes, &panel, &h);
+    const bool gives_up = integrator->state == FC_CATCHING_UP && catches_up(integrator, &nodes, &panel, &h);
     double over = 0.0;
     const bool is_cut = cut_at_meeting(integrator, &nodes, &panel, &h, &over);
     fc_accept_panel(integrator, &nodes, &panel, h);
@@ -307,7 +307,7 @@ static bool cut_at_end_of_push(FcIntegrator* integrator, FcNodes* nodes, FcPanel
 }
 
 void fc_slip_until_event(FcIntegrator* integrator) {
-    assert(integrator->is_slipping);
+    assert(integrator->state == FC_SLIPPING);
     const bool is_one_dimensional = integrator->plane->is_one_dimensional;
     FcNodes nodes;
     FcPanel panel;

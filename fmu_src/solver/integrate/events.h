@@ -4,7 +4,7 @@
 //     slipping           --the push has fallen to 0-->                                                     stuck or relaxing
 //     slipping inside its bound, after a jump  --the push is negative-->                                   stuck
 //
-// The push is the velocity at which the bristle would leave its bound outwards (model/regime.h). The polynomial through a
+// The push is the velocity at which the bristle would leave its bound outwards (model/bound.h). The polynomial through a
 // panel's points finds an event and places it; the meeting of a stuck bristle is placed by its exact motion.
 #ifndef FC_SOLVER_INTEGRATE_EVENTS_H
 #define FC_SOLVER_INTEGRATE_EVENTS_H

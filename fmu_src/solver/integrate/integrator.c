@@ -18,9 +18,9 @@ static const double OF_NEWTON = 2.0;
 FcKind fc_kind(const FcIntegrator* integrator) {
     const FcFriction* friction = integrator->interval->scene->friction;
     return !fc_has_bristle(friction) || integrator->is_rigid ? FC_NO_BRISTLE
-           : integrator->is_slipping                         ? FC_SLIPS
-           : fc_may_stick(friction)                          ? FC_STICKS
-                                                             : FC_RELAXES;
+           : integrator->state == FC_SLIPPING          ? FC_SLIPS
+           : fc_may_stick(friction)               ? FC_STICKS
+                                                       : FC_RELAXES;
 }
 
 FcVector fc_integrator_delta(const FcIntegrator* integrator) {
@@ -105,7 +105,7 @@ void fc_begin_part(FcIntegrator* integrator, int number) {
 
 void fc_choose_variable(FcIntegrator* integrator) {
     const FcTimeMap graded = integrator->parts[integrator->number].in;
-    const bool sticks = fc_kind(integrator) == FC_STICKS && integrator->slips == 0;
+    const bool sticks = fc_kind(integrator) == FC_STICKS && integrator->state == FC_FREE;
     const FcTimeMap wanted = sticks ? (FcTimeMap){0.0, INFINITY} : graded;
     if (wanted.length != integrator->part.in.length) {
         take_variable(integrator, wanted);

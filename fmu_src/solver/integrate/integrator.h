@@ -22,9 +22,8 @@ typedef struct {
     FcMap along, across_map;
     FcPanelStart from; // of the next panel, and whether the maps are for any start
     double scale;      // m, of all these starts
-    int slips;         // FcBristle
-    bool is_slipping;  // along its bound
-    bool touches;      // a free bristle is at its bound
+    FcBristleState state;
+    bool touches; // a free bristle is at its bound
     bool is_bounded;
     bool is_stalled; // at an event that rounding hides: a little push counts as none, and then it slips
     bool is_rigid;   // rounding cannot see the bristle's length beside the path: its force is Coulomb's

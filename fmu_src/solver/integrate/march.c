@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/bound.h"
 #include "model/extremes.h"
-#include "model/regime.h"
 #include "solver/integrate/closed_form.h"
 #include "solver/integrate/events.h"
 #include "solver/integrate/integrator.h"
@@ -81,7 +81,7 @@ static void integrate_part(FcIntegrator* integrator, int number) {
         }
         const double before = integrator->at.u;
         if (!fc_take_closed_form(integrator)) {
-            if (integrator->is_slipping) {
+            if (integrator->state == FC_SLIPPING) {
                 fc_slip_until_event(integrator);
             } else {
                 fc_free_until_event(integrator);
@@ -150,7 +150,8 @@ static void end_on_bound(FcIntegrator* integrator) {
         F.x = integrator->part.side * end.limit;
     }
     fc_set_delta(integrator, (FcVector){F.x / end.sigma, F.y / end.sigma});
-    integrator->slips = integrator->is_slipping = fc_may_stick(integrator->interval->scene->friction);
+    integrator->state =
+        fc_may_stick(integrator->interval->scene->friction) ? FC_SLIPPING : FC_FREE;
     integrator->meetings += integrator->is_bounded;
 }
 
@@ -166,16 +167,17 @@ static void integrate(FcIntegrator* integrator) {
 // A bristle at its bound begins in a slip, which it leaves at once if it is not pushed. One with static friction that
 // sticks there touches its bound.
 static void begin_at_bound(FcIntegrator* integrator, FcBristle bristle) {
-    const bool remembers_stick =
-        fc_has_static_friction(integrator->interval->scene->friction) && bristle.slips == 0;
-    const double D = fc_plane_radius(integrator->plane, &integrator->first, bristle.slips);
-    integrator->slips = bristle.slips;
-    if (integrator->is_bounded && remembers_stick) {
-        integrator->touches = fc_size(bristle) >= D * (1.0 - FC_ROUNDING_OF_BOUND);
-    } else if (integrator->is_bounded) {
-        integrator->is_slipping = fc_size(bristle) >= D * (1.0 - 1e-13);
+    const FcFriction* friction = integrator->interval->scene->friction;
+    const bool has_broken_away = fc_has_broken_away(friction, bristle.state);
+    const double size = fc_size(bristle);
+    const double D = fc_plane_radius(integrator->plane, &integrator->first, bristle.state);
+    integrator->state = has_broken_away ? FC_CATCHING_UP : FC_FREE;
+    if (integrator->is_bounded && fc_has_static_friction(friction) && !has_broken_away) {
+        integrator->touches = size >= D * (1.0 - FC_ROUNDING_OF_BOUND);
+    } else if (integrator->is_bounded && size >= D * (1.0 - 1e-13)) {
+        integrator->state = FC_SLIPPING;
+        integrator->meetings = 1;
     }
-    integrator->meetings = integrator->is_slipping;
 }
 
 static void put_result(const FcIntegrator* integrator, FcStepResult* result) {
@@ -186,10 +188,7 @@ static void put_result(const FcIntegrator* integrator, FcStepResult* result) {
     result->heat += integrator->heat;
     result->drag += integrator->drag;
     result->meetings += integrator->meetings;
-    const bool slips =
-        fc_has_static_friction(integrator->interval->scene->friction) && integrator->slips != 0;
-    result->slips = !slips ? 0 : integrator->plane->is_one_dimensional && result->delta < 0.0 ? -1 : 1;
-    result->on_bound = integrator->is_slipping;
+    result->state = integrator->state;
     if (integrator->slip_length > 0.0) {
         result->slip_time = integrator->slip_time;
         result->slip_side = integrator->slip_side;
@@ -213,7 +212,8 @@ static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
     const double h = interval->duration;
     const double farthest = fc_size(bristle) + longest_way(&scene->drive, h);
     const double D = fc_static_ratio(scene->friction) * fc_scene_smallest_saturation(scene, h);
-    return fc_may_stick(scene->friction) && bristle.slips == 0 && farthest < (1.0 - 1e-9) * D;
+    return fc_may_stick(scene->friction) &&
+           !fc_has_broken_away(scene->friction, bristle.state) && farthest < (1.0 - 1e-9) * D;
 }
 
 static void march(const FcInterval* interval, FcStepResult* result) {

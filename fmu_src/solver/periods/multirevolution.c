@@ -81,7 +81,8 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
                                .side = is_one_dimensional ? total->slip_side : 0,
                                .warm_up = forgets ? WARM_UP : 0};
         bool taken = false;
-        if (k >= tries_at && block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
+        if (k >= tries_at && block.count >= fewest && k >= block.warm_up &&
+            (slipped || !fc_has_broken_away(scene->friction, total->state))) {
             FcStepResult before = *total;
             total->meetings = 0;
             if (phase > 0.0) {

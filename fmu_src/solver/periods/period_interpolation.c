@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/bound.h"
 #include "model/constants.h"
 #include "model/extremes.h"
-#include "model/regime.h"
 #include "model/root.h"
 #include "solver/integrate/march.h"
 #include "solver/integrate/tuning.h"
@@ -64,8 +64,7 @@ static FcScene scene_at(const Block* block, double k) {
 static FcBristle on_bound(const FcScene* scene, int side) {
     FcPlane plane;
     fc_plane_make(&plane, scene);
-    return (FcBristle){.delta = side * fc_bound(&plane, side, 0.0).D,
-                       .slips = fc_has_static_friction(scene->friction) ? side : 0};
+    return (FcBristle){.delta = side * fc_bound(&plane, FC_SLIPPING, 0.0).D, .state = FC_SLIPPING};
 }
 
 // Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k. A distance
@@ -96,6 +95,10 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     return bristle;
 }
 
+static bool broken_away(const Block* block, FcBristleState state) {
+    return fc_has_broken_away(block->of->scene->friction, state);
+}
+
 static double apart(FcBristle a, FcBristle b) { return hypot(a.delta - b.delta, a.delta_y - b.delta_y); }
 
 // The result of period k, if its start does not depend on the earlier start. Of starts after one period more each the
@@ -108,7 +111,8 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     const double before = apart(other, warmed_up(block, k, most - 2));
     const double close =
         allowed(block) / fc_max(block->of->options->stiffness_at_end, fc_scene_stiffness(scene, 0.0));
-    if (start.slips != block->start.slips || other.slips != start.slips ||
+    if (broken_away(block, start.state) != broken_away(block, block->start.state) ||
+        broken_away(block, other.state) != broken_away(block, start.state) ||
         !(last <= close && last * last <= close * (before - last))) {
         return false;
     }
@@ -116,7 +120,8 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     numbers->map = fc_map_of_one_start(&result);
     numbers->across =
         (FcMap){.relaxation = 1.0, .offset = result.delta_y, .impulse_offset = result.impulse_y};
-    return result.slips == start.slips && result.meetings > 0; // a free bristle forgets nothing
+    return broken_away(block, result.state) == broken_away(block, start.state) &&
+           result.meetings > 0; // a free bristle forgets nothing
 }
 
 // The map of period k of the block; false if it has segments, or does not lead from the bound to the bound as
@@ -136,7 +141,7 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
         return true;
     }
     const FcBristle start = on_bound(&scene, block->of->side);
-    if (fc_regime(&scene, start) != (FcRegime)block->of->side) {
+    if (fc_bristle_state(&scene, start) != FC_SLIPPING) {
         return false;
     }
     const FcStepResult result = take_period(block, &scene, start);
@@ -512,10 +517,9 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
         (sticks ? meets_while_stuck(block, suspects, places) : meets_in_some(block, suspects, places))) {
         return false;
     }
-    result.on_bound = false;
     result.evaluations = *block->evaluations;
     if (of->side != 0) {
-        result.slips = fc_has_static_friction(of->scene->friction) ? of->side : 0;
+        result.state = FC_CATCHING_UP; // the interpolated end lies on the bound but for its error
     }
     *total = result;
     return true;

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/bound.h"
 #include "model/extremes.h"
-#include "model/regime.h"
 #include "solver/integrate/march.h"
 #include "solver/periods/multirevolution.h"
 #include "solver/periods/segments.h"
@@ -220,13 +220,18 @@ static void take_cycles(PeriodicSearch* search, double times) {
     search->done += times * (search->done - search->anchor_period);
 }
 
+static bool has_broken_away(const PeriodicSearch* search, const FcStepResult* result) {
+    return fc_has_broken_away(search->scene->friction, result->state);
+}
+
 // Whether the bristle has returned to its state after the kept period.
 static bool repeats(PeriodicSearch* search) {
     const FcStepResult* total = &search->total;
     const double size = size_of(total);
     const double changed =
         fc_max(fabs(total->delta - search->anchor.delta), fabs(total->delta_y - search->anchor.delta_y));
-    if (search->anchor_period < 0.0 || total->slips != search->anchor.slips ||
+    if (search->anchor_period < 0.0 ||
+        has_broken_away(search, total) != has_broken_away(search, &search->anchor) ||
         !(changed <= SAME_END * size)) {
         return false;
     }
@@ -258,7 +263,7 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
     const double part = length > most ? most / length : 1.0;
     const FcBristle reached = fc_project_onto_bound(scene, (FcBristle){.delta = from.x + part * start.x,
                                                                        .delta_y = from.y + part * start.y,
-                                                                       .slips = total->slips});
+                                                                       .state = total->state});
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
     return true;
@@ -290,7 +295,7 @@ static void search_repetition(PeriodicSearch* search, double periods) {
         total->meetings = 0;
         fc_march_step(search->scene, search->options, search->period, total);
         search->done += 1.0;
-        const bool was_free = total->meetings == 0 && total->slips == 0;
+        const bool was_free = total->meetings == 0 && !has_broken_away(search, total);
         if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
             search->anchor_period = -1.0;
             return;
@@ -442,7 +447,7 @@ FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options
             if (isfinite(search.least.delta)) {
                 end->delta = search.least.delta;
                 end->delta_y = search.least.delta_y;
-                end->slips = search.least.slips;
+                end->state = search.least.state;
             }
             return (FcVector){(search.total.impulse - search.anchor.impulse) / cycle * f,
                               (search.total.impulse_y - search.anchor.impulse_y) / cycle * f};

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <stddef.h>
 
+#include "model/bound.h"
 #include "model/extremes.h"
-#include "model/regime.h"
 #include "solver/integrate/march.h"
 
 void fc_segments_start(FcSegments* segments, const FcScene* scene, double whole) {
@@ -42,8 +42,7 @@ void fc_open_contact_step(FcStepResult* result) {
     result->lost += result->delta;
     result->lost_y += result->delta_y;
     result->delta = result->delta_y = 0.0;
-    result->slips = 0;
-    result->on_bound = false;
+    result->state = FC_FREE;
 }
 
 void fc_project_result(const FcScene* scene, FcStepResult* result) {
@@ -53,13 +52,13 @@ void fc_project_result(const FcScene* scene, FcStepResult* result) {
     const double D = fc_size(reached);
     if (D < size) {
         const FcDrive* drive = &scene->drive;
-        result->heat += 0.5 * fc_scene_contact(scene, 0.0).sigma * (size - D) * (size + D);
+        result->heat += fc_drop_heat(fc_scene_contact(scene, 0.0).sigma, size, D);
         result->drag += (reached.delta - bristle.delta) * fc_drive_V(drive, 0.0) +
                         (reached.delta_y - bristle.delta_y) * fc_drive_V_y(drive, 0.0);
     }
     result->delta = reached.delta;
     result->delta_y = reached.delta_y;
-    result->slips = reached.slips;
+    result->state = reached.state;
 }
 
 // A limit that falls by decades is too small at the step's end for the scale of the whole step: a segment has

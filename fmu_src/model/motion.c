@@ -1,4 +1,4 @@
-#include "model/regime.h"
+#include "model/motion.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,108 +12,6 @@ static FcVector direction(FcVector a) { return fc_direction(a, (FcVector){0.0, 0
 // The part of a that is perpendicular to n, |n| = 1.
 static FcVector perpendicular(FcVector a, FcVector n) { return fc_plus(a, -fc_product(a, n), n); }
 
-// The direction in which a bristle slips, or else that of its deflection. side is FcRegime, or slips.
-static FcVector direction_of_slip(const FcScene* scene, int side, FcBristle bristle) {
-    return side != 0 && !fc_is_planar(scene, bristle) ? (FcVector){side, 0.0} : direction(fc_delta(bristle));
-}
-
-// A bristle beside its bound at the start of a scene.
-typedef struct {
-    FcPlane plane;
-    FcPlaneCoefficients at;
-    FcPlaneBound bound;
-    FcVector n; // the direction of the deflection, or that in which it slips along a line
-} AtBound;
-
-// The result points into itself.
-static void find_bound(AtBound* of, const FcScene* scene, FcBristle bristle) {
-    const FcPhase phase = fc_drive_phase(&scene->drive, 0.0);
-    fc_plane_make(&of->plane, scene);
-    of->at = fc_plane_coefficients(&of->plane, 0.0, phase);
-    of->bound = fc_plane_bound(&of->plane, &of->at, bristle.slips, 0.0, phase);
-    of->n = direction_of_slip(scene, bristle.slips, bristle);
-}
-
-static double push(const AtBound* of) { return fc_plane_push(&of->plane, &of->at, &of->bound, of->n); }
-
-double fc_push(const FcScene* scene, FcBristle bristle) {
-    AtBound of;
-    find_bound(&of, scene, bristle);
-    return push(&of);
-}
-
-static FcBristle moved_onto(const AtBound* of, FcBristle bristle) {
-    const FcVector n = direction(fc_delta(bristle));
-    bristle.delta = of->bound.D * n.x;
-    bristle.delta_y = of->bound.D * n.y;
-    return bristle;
-}
-
-FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle) {
-    if (fc_scene_is_separated(scene)) {
-        return (FcBristle){0};
-    }
-    if (!fc_is_bounded(scene->friction)) {
-        return bristle;
-    }
-    AtBound of;
-    find_bound(&of, scene, bristle);
-    const double size = fc_size(bristle);
-    if (size > of.bound.D) {
-        if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
-            size > (1.0 + FC_ROUNDING_OF_BOUND) * of.bound.D) {
-            bristle.slips = fc_is_planar(scene, bristle) ? 1 : fc_side(bristle);
-            find_bound(&of, scene, bristle);
-        }
-        bristle = moved_onto(&of, bristle);
-    }
-    // A bristle with a push of 0 remains slipping. Its motion decides whether it sticks.
-    if (bristle.slips != 0 && push(&of) < 0.0) {
-        bristle.slips = 0;
-    }
-    return bristle;
-}
-
-FcBristle fc_scale_onto_bound(const FcScene* scene, FcBristle bristle) {
-    AtBound of;
-    find_bound(&of, scene, bristle);
-    return moved_onto(&of, bristle);
-}
-
-FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
-    if (!fc_is_bounded(scene->friction) || fc_scene_is_separated(scene) ||
-        (fc_has_static_friction(scene->friction) && bristle.slips == 0)) {
-        return FC_FREE;
-    }
-    AtBound of;
-    find_bound(&of, scene, bristle);
-    const bool on_bound = fc_product(of.n, fc_delta(bristle)) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
-    return on_bound && push(&of) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
-}
-
-// The hysteresis of an event, over the bound and over the velocities: far above rounding, far below the
-// tolerance of an integrator. Half or twice of it moves the events by as little.
-static const double HYSTERESIS = 1e-10;
-
-void fc_regime_indicators(const FcScene* scene, FcRegime regime, FcBristle bristle, double z[2]) {
-    z[0] = z[1] = 1.0;
-    if (!fc_is_bounded(scene->friction) || fc_scene_is_separated(scene)) {
-        return;
-    }
-    AtBound of;
-    find_bound(&of, scene, bristle);
-    const int side = bristle.slips != 0 ? bristle.slips : (int)regime; // 0 for either
-    if (regime == FC_FREE) {
-        const bool has_side = side != 0 && !fc_is_planar(scene, bristle);
-        const double size = has_side ? side * bristle.delta : fc_size(bristle);
-        z[0] = (1.0 - size / of.bound.D) + HYSTERESIS;
-    }
-    if (side != 0) {
-        const double speed = fc_drive_largest_speed(&scene->drive, 0.0) + fabs(of.bound.rate);
-        z[1] = push(&of) + HYSTERESIS * speed;
-    }
-}
-
 // The parts of a motion, or their derivatives along a direction.
 typedef struct {
     FcVector V;          // m/s
@@ -122,7 +20,7 @@ typedef struct {
     FcVector state_rate; // m/s, the same of a delta that lags behind the bound
 } Parts;
 
-static Parts slipping_parts(const AtBound* of, FcBristle bristle) {
+static Parts slipping_parts(const FcAtBound* of, FcBristle bristle) {
     const FcVector turning = perpendicular(of->at.V, of->n);
     const FcVector rate = times(of->bound.rate, of->n);
     return (Parts){.V = of->at.V,
@@ -131,14 +29,13 @@ static Parts slipping_parts(const AtBound* of, FcBristle bristle) {
                    .state_rate = fc_plus(rate, fc_size(bristle) / of->bound.D, turning)};
 }
 
-static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
+static Parts parts(const FcScene* scene, FcBristle bristle) {
     if (fc_scene_is_separated(scene)) {
         return (Parts){.V = {fc_drive_V(&scene->drive, 0.0), fc_drive_V_y(&scene->drive, 0.0)}};
     }
-    if (regime != FC_FREE) {
-        AtBound of;
-        bristle.slips = (int)regime;
-        find_bound(&of, scene, bristle);
+    if (bristle.state == FC_SLIPPING) {
+        FcAtBound of;
+        fc_at_bound(&of, scene, bristle);
         return slipping_parts(&of, bristle);
     }
     FcPlane plane;
@@ -166,12 +63,13 @@ FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBris
     if (fc_has_bristle(friction) && friction->sigma_1 == 0.0 && friction->sigma_2 == 0.0) {
         return times(contact->sigma, fc_delta(bristle));
     }
-    const Parts at = parts(scene, friction->sigma_1 != 0.0 ? fc_regime(scene, bristle) : FC_FREE, bristle);
+    bristle.state = friction->sigma_1 != 0.0 ? fc_bristle_state(scene, bristle) : FC_FREE;
+    const Parts at = parts(scene, bristle);
     return whole_force(friction, &at);
 }
 
-FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle) {
-    const Parts at = parts(scene, regime, bristle);
+FcMotion fc_motion(const FcScene* scene, FcBristle bristle) {
+    const Parts at = parts(scene, bristle);
     const FcVector F = whole_force(scene->friction, &at);
     const double power = fc_product(F, at.V);
     return (FcMotion){.force = F,
@@ -221,14 +119,14 @@ static double log_curve_along(const FcFriction* friction, FcVector V, const FcDi
 
 // The derivative of ln g, or of the limit of the bound: by the parameter of the limit, the normal force and the Stribeck
 // curve, of which the static bound has the ratio.
-static double log_limit_along(const FcFriction* friction, FcRegime regime, FcVector V, double log_F_n,
+static double log_limit_along(const FcFriction* friction, bool slips, FcVector V, double log_F_n,
                               const FcDirection* along) {
-    const bool is_static = regime != FC_FREE && !fc_may_stick(friction);
+    const bool is_static = slips && !fc_may_stick(friction);
     return along->log_limit + (fc_limit_follows_load(friction) ? log_F_n : 0.0) +
            (is_static ? along->staticRatio / friction->staticRatio : log_curve_along(friction, V, along));
 }
 
-static Parts slipping_along(const AtBound* of, FcBristle bristle, double log_sigma, double log_limit,
+static Parts slipping_along(const FcAtBound* of, FcBristle bristle, double log_sigma, double log_limit,
                             const FcDirection* along) {
     const FcVector V = of->at.V;
     const FcVector n = of->n;
@@ -252,7 +150,7 @@ static Parts slipping_along(const AtBound* of, FcBristle bristle, double log_sig
                    .state_rate = fc_plus(fc_plus(with_D, lag, turning_along), lag_along, turning)};
 }
 
-static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, double log_limit,
+static Parts free_along(const FcAtBound* of, FcBristle bristle, double log_sigma, double log_limit,
                         const FcDirection* along) {
     const FcPlaneCoefficients* at = &of->at;
     const FcFriction* friction = of->plane.scene->friction;
@@ -281,22 +179,23 @@ static Parts free_along(const AtBound* of, FcBristle bristle, double log_sigma, 
                    .state_rate = rate};
 }
 
-static Parts parts_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along) {
+static Parts parts_along(const FcScene* scene, FcBristle bristle, const FcDirection* along) {
     if (fc_scene_is_separated(scene)) {
         return (Parts){.V = {along->V, along->V_y}};
     }
-    AtBound of;
-    bristle.slips = (int)regime;
-    find_bound(&of, scene, bristle);
+    const bool slips = bristle.state == FC_SLIPPING;
+    bristle.state = slips ? FC_SLIPPING : FC_FREE;
+    FcAtBound of;
+    fc_at_bound(&of, scene, bristle);
     const FcContactLogSlope by = fc_contact_along(scene, along);
-    const double log_limit = log_limit_along(scene->friction, regime, of.at.V, by.F_n, along);
-    return regime == FC_FREE ? free_along(&of, bristle, by.sigma, log_limit, along)
-                             : slipping_along(&of, bristle, by.sigma, log_limit, along);
+    const double log_limit = log_limit_along(scene->friction, slips, of.at.V, by.F_n, along);
+    return slips ? slipping_along(&of, bristle, by.sigma, log_limit, along)
+                 : free_along(&of, bristle, by.sigma, log_limit, along);
 }
 
-FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along) {
-    const Parts at = parts(scene, regime, bristle);
-    const Parts change = parts_along(scene, regime, bristle, along);
+FcMotion fc_motion_along(const FcScene* scene, FcBristle bristle, const FcDirection* along) {
+    const Parts at = parts(scene, bristle);
+    const Parts change = parts_along(scene, bristle, along);
     const FcVector F = whole_force(scene->friction, &at);
     FcVector F_along = fc_plus(whole_force(scene->friction, &change), along->sigma_2, at.V);
     if (fc_has_bristle(scene->friction)) {
@@ -313,11 +212,11 @@ FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristl
 
 // Second time derivative of the bound [m/s2], by a central difference of its rate, which is exact. The
 // difference is taken over the fastest change of an input, and away from surfaces that would touch.
-static double bound_acceleration(const FcScene* scene, FcRegime regime) {
+static double bound_acceleration(const FcScene* scene) {
     const FcDrive* drive = &scene->drive;
     FcPlane plane;
     fc_plane_make(&plane, scene);
-    const FcPlaneBound now = fc_bound(&plane, regime, 0.0);
+    const FcPlaneBound now = fc_bound(&plane, FC_SLIPPING, 0.0);
     double pace = drive->omega + fabs(now.log_sigma_rate) + fabs(now.rate / now.D + now.log_sigma_rate) +
                   fabs(drive->E.rate) / drive->E.value;
     if (drive->load.rate != 0.0) {
@@ -332,18 +231,18 @@ static double bound_acceleration(const FcScene* scene, FcRegime regime) {
     }
     double tau = 1e-4 / pace; // the error is some tau^2
     tau = copysign(tau, fc_scene_d_rate(scene, 0.0));
-    const double apart = fc_bound(&plane, regime, tau).rate;
+    const double apart = fc_bound(&plane, FC_SLIPPING, tau).rate;
     if (fc_scene_d(scene, -tau) > 0.0) {
-        return (apart - fc_bound(&plane, regime, -tau).rate) / (2.0 * tau);
+        return (apart - fc_bound(&plane, FC_SLIPPING, -tau).rate) / (2.0 * tau);
     }
-    return (4.0 * apart - 3.0 * now.rate - fc_bound(&plane, regime, 2.0 * tau).rate) / (2.0 * tau);
+    return (4.0 * apart - 3.0 * now.rate - fc_bound(&plane, FC_SLIPPING, 2.0 * tau).rate) / (2.0 * tau);
 }
 
 FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
     const FcDrive* drive = &scene->drive;
     const FcPhase phase = fc_drive_phase(drive, 0.0);
-    const FcRegime regime = fc_regime(scene, bristle);
-    const FcStateRates rates = fc_motion(scene, regime, bristle).rates;
+    bristle.state = fc_bristle_state(scene, bristle);
+    const FcStateRates rates = fc_motion(scene, bristle).rates;
     FcDirection in_time = {
         .V = fc_drive_velocity_at_phase(drive, 0.0, phase).rate,
         .d = drive->d.rate,
@@ -354,9 +253,9 @@ FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
         .V_y = fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate,
         .delta_y = rates.delta_y,
     };
-    if (regime != FC_FREE && scene->friction->sigma_1 != 0.0) {
-        in_time.bound_rate = bound_acceleration(scene, regime);
+    if (bristle.state == FC_SLIPPING && scene->friction->sigma_1 != 0.0) {
+        in_time.bound_rate = bound_acceleration(scene);
     }
-    const Parts change = parts_along(scene, regime, bristle, &in_time);
+    const Parts change = parts_along(scene, bristle, &in_time);
     return whole_force(scene->friction, &change);
 }
