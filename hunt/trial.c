@@ -43,14 +43,14 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     FcVariables* v = &state->variables;
     step->delta_start = v->delta;
     step->delta_y_start = v->delta_y;
-    step->slips_start = fc_has_broken_away(&v->friction, (FcBristleState)state->bristle)
+    step->slips_start = fc_has_broken_away(&v->friction, (FcBristleState)state->bristle.state)
                             ? fc_side((FcBristle){.delta = v->delta})
                             : 0;
     step->v_start = v->body.v;
     step->x_start = v->body.x;
     step->force_before = v->sigma * hypot(v->delta, v->delta_y);
     put_scene(scene, v);
-    state->next_rate_set = 1; // all 0
+    state->rates.next_is_set = 1; // all 0
     if (!run->started || !fc_friction_contact_refresh(&run->contact, &run->message)) {
         return false;
     }
@@ -58,12 +58,12 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     const double rates[] = {[FC_INPUT_V] = scene->V_rate,     [FC_INPUT_D] = scene->d_rate,
                             [FC_INPUT_E] = scene->E_rate,     [FC_INPUT_LOAD] = scene->load_rate,
                             [FC_INPUT_V_Y] = scene->V_y_rate, [FC_INPUT_F] = scene->F_rate};
-    memcpy(state->next_rate, rates, sizeof rates);
+    memcpy(state->rates.next, rates, sizeof rates);
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
-    const double work = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
-    const double heat = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
+    const double work = (v->W_f - before->variables.W_f) + (state->rest.W_f - before->rest.W_f);
+    const double heat = (v->Q_f - before->variables.Q_f) + (state->rest.Q_f - before->rest.Q_f);
     const double results[RESULTS] = {v->F_t,
                                      v->F_y,
                                      v->F_t_mean,
@@ -74,7 +74,7 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
                                      heat,
                                      v->body.v,
                                      v->body.x,
-                                     fc_has_broken_away(&v->friction, (FcBristleState)state->bristle),
+                                     fc_has_broken_away(&v->friction, (FcBristleState)state->bristle.state),
                                      v->delta,
                                      v->delta_y};
     memcpy(step->result, results, sizeof results);

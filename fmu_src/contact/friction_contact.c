@@ -97,7 +97,7 @@ static void scene_from(FcFrictionContact* contact, double start, double rest,
 }
 
 static const double* present_rates(const FcFrictionState* state) {
-    return state->next_rate_set ? state->next_rate : state->rate;
+    return state->rates.next_is_set ? state->rates.next : state->rates.last;
 }
 
 static FcBody body_of(const FcVariables* v, const double rate[FC_INPUT_COUNT]) {
@@ -116,14 +116,15 @@ static FcScene scene_with_body(const FcFrictionContact* contact, const FcScene* 
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcScene before = fc_body_scene(scene, &body, bristle);
-    return fc_body_scene(scene, &body, fc_input_jump(&before, t, &contact->state.past, &bristle, &heat));
+    return fc_body_scene(scene, &body,
+                         fc_input_jump(&before, t, &contact->state.bristle.past, &bristle, &heat));
 }
 
 static FcScene present_scene(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
     const FcFrictionState* state = &contact->state;
     FcScene scene;
-    scene_from(contact, state->time, state->time_rest, rate, 0.0, &scene);
-    return state->variables.body.m > 0.0 ? scene_with_body(contact, &scene, state->time, rate) : scene;
+    scene_from(contact, state->clock.time, state->clock.rest, rate, 0.0, &scene);
+    return state->variables.body.m > 0.0 ? scene_with_body(contact, &scene, state->clock.time, rate) : scene;
 }
 
 FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
@@ -336,13 +337,13 @@ void fc_set_outputs(FcVariables* v, FcVector force, FcVector mean, const FcConta
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
     const FcVariables* v = &contact->state.variables;
     return (FcBristle){
-        .delta = v->delta, .state = (FcBristleState)contact->state.bristle, .delta_y = v->delta_y};
+        .delta = v->delta, .state = (FcBristleState)contact->state.bristle.state, .delta_y = v->delta_y};
 }
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    return fc_input_jump(scene, contact->state.time, &contact->state.past, &bristle, &heat);
+    return fc_input_jump(scene, contact->state.clock.time, &contact->state.bristle.past, &bristle, &heat);
 }
 
 double* fc_input_of(FcVariables* v, FcInput input) {
@@ -376,10 +377,10 @@ FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const doubl
 // stiffness and the limit finite and above 0, and the time must determine the phase.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
     FcScene scene;
-    scene_from(contact, contact->state.time, contact->state.time_rest, HELD, 0.0, &scene);
+    scene_from(contact, contact->state.clock.time, contact->state.clock.rest, HELD, 0.0, &scene);
     const FcVariables* v = &contact->state.variables;
-    return check_inputs(v, message) && check_body(v, contact->state.next_rate, message) &&
-           check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
+    return check_inputs(v, message) && check_body(v, contact->state.rates.next, message) &&
+           check_time(&scene.drive, contact->state.clock.time, message) && check_scene(&scene, 0.0, message);
 }
 
 static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
@@ -516,11 +517,11 @@ static FcBristle first_bristle(FcFrictionContact* contact) {
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message) {
     FcFrictionContact fresh = *contact;
     FcFrictionState* state = &fresh.state;
-    state->time = start;
-    state->time_rest = 0.0;
-    state->W_f_rest = 0.0;
-    state->Q_f_rest = 0.0;
-    memcpy(state->rate, HELD, sizeof state->rate);
+    state->clock.time = start;
+    state->clock.rest = 0.0;
+    state->rest.W_f = 0.0;
+    state->rest.Q_f = 0.0;
+    memcpy(state->rates.last, HELD, sizeof state->rates.last);
     state->ode = (FcOdeState){0};
     FcVariables* v = &state->variables;
     v->body.v = v->body.m > 0.0 ? v->body.v_0 : 0.0;
@@ -534,11 +535,11 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     const FcBristle first = first_bristle(&fresh);
     v->delta = first.delta;
     v->delta_y = first.delta_y;
-    state->bristle = first.state;
+    state->bristle.state = first.state;
     const FcScene scene = fc_friction_contact_scene_moving(&fresh, NULL);
     const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_project_onto_bound(&scene, first));
     const bool is_within = fc_is_bounded(&v->friction) && fc_size(first) <= within;
-    state->past = is_within ? fc_past(&scene) : (FcPast){.sigma = 0.0}; // an error_ratio becomes heat
+    state->bristle.past = is_within ? fc_past(&scene) : (FcPast){.sigma = 0.0}; // an error_ratio becomes heat
     if (v->solver.evaluations > FC_MAX_EVALUATIONS) {
         return fc_message_set(
             message,
@@ -607,22 +608,22 @@ static void accumulate(double* sum, double* rest, double part) {
 static void commit(FcFrictionState* state, double h, const FcStepResult* result, FcBristle reached,
                    const FcPast* past) {
     FcVariables* v = &state->variables;
-    v->body.F += state->next_rate[FC_INPUT_F] * h;
-    state->bristle = reached.state;
-    state->past = *past;
-    v->V = velocity_after(v->V, state->next_rate[FC_INPUT_V], h);
-    v->V_y = velocity_after(v->V_y, state->next_rate[FC_INPUT_V_Y], h);
-    v->d += state->next_rate[FC_INPUT_D] * h;
-    v->E = fc_input_after((FcLinearInput){v->E, state->next_rate[FC_INPUT_E]}, h);
-    v->load = load_after((FcLinearInput){v->load, state->next_rate[FC_INPUT_LOAD]}, h);
+    v->body.F += state->rates.next[FC_INPUT_F] * h;
+    state->bristle.state = reached.state;
+    state->bristle.past = *past;
+    v->V = velocity_after(v->V, state->rates.next[FC_INPUT_V], h);
+    v->V_y = velocity_after(v->V_y, state->rates.next[FC_INPUT_V_Y], h);
+    v->d += state->rates.next[FC_INPUT_D] * h;
+    v->E = fc_input_after((FcLinearInput){v->E, state->rates.next[FC_INPUT_E]}, h);
+    v->load = load_after((FcLinearInput){v->load, state->rates.next[FC_INPUT_LOAD]}, h);
     v->delta = reached.delta;
     v->delta_y = reached.delta_y;
     v->solver.evaluations += result->evaluations;
-    accumulate(&v->W_f, &state->W_f_rest, result->work);
-    accumulate(&v->Q_f, &state->Q_f_rest, result->heat);
-    memcpy(state->rate, state->next_rate, sizeof state->rate);
-    memset(state->next_rate, 0, sizeof state->next_rate);
-    state->next_rate_set = 0;
+    accumulate(&v->W_f, &state->rest.W_f, result->work);
+    accumulate(&v->Q_f, &state->rest.Q_f, result->heat);
+    memcpy(state->rates.last, state->rates.next, sizeof state->rates.last);
+    memset(state->rates.next, 0, sizeof state->rates.next);
+    state->rates.next_is_set = 0;
 }
 
 static bool inputs_move(const double rate[FC_INPUT_COUNT]) {
@@ -643,9 +644,9 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcFrictionState* before = &contact->state;
     FcScene scene;
-    scene_from(contact, t, 0.0, before->next_rate, 0.0, &scene);
+    scene_from(contact, t, 0.0, before->rates.next, 0.0, &scene);
     if (!check_inputs(&before->variables, message) ||
-        !check_body(&before->variables, before->next_rate, message) ||
+        !check_body(&before->variables, before->rates.next, message) ||
         !check_time(&scene.drive, t, message) || !check_time(&scene.drive, t + h, message)) {
         return false;
     }
@@ -653,16 +654,16 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     const FcVariables* v = &before->variables;
-    FcBody body = body_of(v, before->next_rate);
+    FcBody body = body_of(v, before->rates.next);
     const bool has_body = body.m > 0.0;
     FcScene moved; // seen by the bristle, and then at the end
     if (has_body) {
-        moved = scene_with_body(contact, &scene, t, before->next_rate);
+        moved = scene_with_body(contact, &scene, t, before->rates.next);
     }
     const FcScene* seen = has_body ? &moved : &scene;
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const FcBristle start = fc_input_jump(seen, t, &before->past, &bristle, &heat);
+    const FcBristle start = fc_input_jump(seen, t, &before->bristle.past, &bristle, &heat);
     FcStepResult result;
     const FcMethod method = (FcMethod)v->solver.method;
     const bool moves = !fc_drive_is_constant(&scene.drive);
@@ -688,9 +689,9 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     // step's start would lose digits with every period.
     const double time_rest = rounding_of_sum(t, h);
     // also one that the law does not use
-    const bool ends_elsewhere = has_body || moves || inputs_move(before->next_rate);
+    const bool ends_elsewhere = has_body || moves || inputs_move(before->rates.next);
     if (ends_elsewhere) {
-        scene_from(contact, t + h, time_rest, before->next_rate, h, &moved);
+        scene_from(contact, t + h, time_rest, before->rates.next, h, &moved);
         if (has_body) {
             body.v =
                 body.sticks ? 0.0 - fc_drive_V(&moved.drive, 0.0) : body.v; // as the next step will see it
@@ -721,8 +722,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     fc_set_outputs(&contact->state.variables, force, mean, &response);
     contact->state.variables.body.v = body.v;
     contact->state.variables.body.x = body.x;
-    contact->state.time = t + h;
-    contact->state.time_rest = time_rest;
+    contact->state.clock.time = t + h;
+    contact->state.clock.rest = time_rest;
     return true;
 }
 

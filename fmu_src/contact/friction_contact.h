@@ -75,7 +75,7 @@ double* fc_input_of(FcVariables* v, FcInput input);
 // The state of model exchange besides the variables (ode.h).
 typedef struct {
     int changed;                  // a state was changed since the event began
-    int no_hole;                  // 0: no padding, so that equal states have equal bytes
+    int no_hole;                  // 0
     double seen_time;             // s, of the inputs that were seen last
     double seen[FC_INPUT_COUNT];  // these inputs
     double speed[FC_INPUT_COUNT]; // 1/s times their units: how fast they move
@@ -89,16 +89,25 @@ typedef struct {
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
     FcVariables variables;
-    double time;      // s, the communication point reached
-    double time_rest; // s, the rounding error of time
-    double W_f_rest;  // J, the rounding errors of the sums W_f
-    double Q_f_rest;  // J, and Q_f
-    double rate
-        [FC_INPUT_COUNT]; // time derivatives of the inputs over the last step, 0 once an input is set again
-    double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
-    int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
-    int bristle;       // FcBristleState
-    FcPast past;       // the end of the last step, from which inputs and parameters may jump
+    struct {
+        double time; // s, the communication point
+        double rest; // s, the rounding error of time
+    } clock;
+    struct {
+        double W_f, Q_f; // J
+    } rest;              // the rounding errors of the sums
+    struct {
+        double last
+            [FC_INPUT_COUNT]; // time derivatives of the inputs over the last step, 0 once an input is set again
+        double next[FC_INPUT_COUNT]; // the same for the next step; 0 again after it
+        int next_is_set; // one of them was set since the last step, so all of them hold, also a zero
+        int no_hole;     // 0: no padding, so that equal states have equal bytes
+    } rates;
+    struct {
+        FcPast past; // the end of the last step, from which inputs and parameters may jump
+        int state;   // FcBristleState
+        int no_hole; // 0
+    } bristle;
     FcOdeState ode;
 } FcFrictionState;
 
@@ -122,7 +131,7 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, const FcVariables* 
 void fc_friction_contact_free(FcFrictionContact* contact); // frees the memory of the two above
 
 // Advances from t to t + h [s]. Refuses an h below 0 or subnormal, and an end that is not finite. The inputs
-// move at next_rate and keep their end values. With h = 0 time stands still: F_t_mean is F_t, and next_rate
+// move at rates.next and keep their end values. With h = 0 time stands still: F_t_mean is F_t, and rates.next
 // is used up as in any step.
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
 

@@ -68,20 +68,20 @@ void fc_ode_start(FcFrictionContact* contact) {
 }
 
 void fc_ode_set_time(FcFrictionContact* contact, double time) {
-    contact->state.time = time;
-    contact->state.time_rest = 0.0;
+    contact->state.clock.time = time;
+    contact->state.clock.rest = 0.0;
 }
 
 static FcBristleState state_of(const FcFrictionContact* contact) {
-    return (FcBristleState)contact->state.bristle;
+    return (FcBristleState)contact->state.bristle.state;
 }
 
 // The speeds of the inputs since the last step, or those in it if the time since then is too short. Returns
 // whether it is long enough.
 static bool find_speeds(FcFrictionContact* contact, double speed[FC_INPUT_COUNT]) {
     const FcOdeState* ode = &contact->state.ode;
-    const double passed = contact->state.time - ode->seen_time;
-    const bool is_long = passed > SHORTEST_LOOK * fabs(contact->state.time);
+    const double passed = contact->state.clock.time - ode->seen_time;
+    const bool is_long = passed > SHORTEST_LOOK * fabs(contact->state.clock.time);
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
         const double input = *fc_input_of(&contact->state.variables, (FcInput)i);
         const double now = is_long ? (input - ode->seen[i]) / passed : ode->speed[i];
@@ -92,7 +92,7 @@ static bool find_speeds(FcFrictionContact* contact, double speed[FC_INPUT_COUNT]
 
 static void see_inputs(FcFrictionContact* contact) {
     FcOdeState* ode = &contact->state.ode;
-    ode->seen_time = contact->state.time;
+    ode->seen_time = contact->state.clock.time;
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
         ode->seen[i] = *fc_input_of(&contact->state.variables, (FcInput)i);
     }
@@ -143,7 +143,7 @@ bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_C
     if (fc_scene_depends_on_d(&now.scene)) {
         const double closed_by = fc_scene_closed_by(&now.scene);
         // An open contact leaves no past, nor does a closed one whose stiffness is below the least number.
-        const bool was_open = contact->state.past.sigma == 0.0 &&
+        const bool was_open = contact->state.bristle.past.sigma == 0.0 &&
                               (closed_by <= 0.0 || fc_scene_stiffness(&now.scene, 0.0) > 0.0);
         z[3] = was_open ? -closed_by : closed_by;
     }
@@ -236,13 +236,13 @@ static void begin_regime(FcFrictionContact* contact) {
     update_x(contact, &now);
     double heat;
     const FcBristle before = fc_friction_contact_bristle(contact);
-    FcBristle bristle = fc_input_jump(&now.scene, state->time, &state->past, &before, &heat);
+    FcBristle bristle = fc_input_jump(&now.scene, state->clock.time, &state->bristle.past, &before, &heat);
     if (bristle.state != FC_FREE && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.state = FC_FREE;
     }
     move_to(contact, fc_delta(bristle), heat);
-    state->bristle = fc_bristle_state(&now.scene, bristle);
-    state->past = fc_past(&now.scene);
+    state->bristle.state = fc_bristle_state(&now.scene, bristle);
+    state->bristle.past = fc_past(&now.scene);
     Slip slip;
     if (slips_along(contact, &slip)) { // it is there, apart from rounding
         move_to(contact, slip.delta, 0.0);
@@ -271,7 +271,7 @@ void fc_ode_event_begins(FcFrictionContact* contact) {
     const bool slips = slips_along(contact, &slip);
     move_to(contact, slips ? slip.delta : (FcVector){v->delta, v->delta_y}, ode->lag_heat);
     ode->lag = ode->lag_heat = ode->lag_force = 0.0;
-    contact->state.past = (FcPast){.sigma = 0.0};
+    contact->state.bristle.past = (FcPast){.sigma = 0.0};
     FcMessage ignored;
     if (fc_friction_contact_check(contact, &ignored)) {
         const FcVector before = {v->delta, v->delta_y};
@@ -375,8 +375,8 @@ bool fc_ode_next_event(FcFrictionContact* contact, double* time) {
                     ? PART_OF_PERIOD * period
                     : time_to_turn(&now, contact->state.variables.delta, period, ahead);
     }
-    *time = contact->state.time + ahead + AFTER_TURN * period;
-    return isfinite(*time) && *time > contact->state.time;
+    *time = contact->state.clock.time + ahead + AFTER_TURN * period;
+    return isfinite(*time) && *time > contact->state.clock.time;
 }
 
 void fc_ode_event_ends(FcFrictionContact* contact) {

@@ -36,11 +36,11 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
     state->variables.delta_y = 0.0;
     state->variables.V += state->variables.body.v; // at which the mass moves, as if it went on
     state->variables.body.m = 0.0;
-    state->time = 0.0;
-    state->time_rest = 0.0;
-    state->bristle = FC_FREE;
-    memset(state->rate, 0, sizeof state->rate);
-    state->next_rate_set = 0;
+    state->clock.time = 0.0;
+    state->clock.rest = 0.0;
+    state->bristle.state = FC_FREE;
+    memset(state->rates.last, 0, sizeof state->rates.last);
+    state->rates.next_is_set = 0;
     return held;
 }
 

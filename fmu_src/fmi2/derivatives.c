@@ -67,8 +67,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
         }
     }
     for (size_t i = 0; i < nvr; i++) {
-        instance->contact.state.next_rate[fc_variable_input(&fc_variables[vr[i]])] = value[i];
-        instance->contact.state.next_rate_set = 1;
+        instance->contact.state.rates.next[fc_variable_input(&fc_variables[vr[i]])] = value[i];
+        instance->contact.state.rates.next_is_set = 1;
     }
     instance->experiment.outputs_stale |= nvr > 0;
     return fmi2OK;
@@ -119,7 +119,7 @@ static bool is_known(const FcVariableInfo* info) {
 static FcFrictionContact moved_by(const FcFrictionContact* contact, const FcVariableInfo* info,
                                   double change) {
     FcFrictionContact moved = *contact;
-    *(info->causality == FC_CAUSALITY_INDEPENDENT ? &moved.state.time_rest
+    *(info->causality == FC_CAUSALITY_INDEPENDENT ? &moved.state.clock.rest
                                                   : fc_variable_real(&moved.state.variables, info)) += change;
     return moved;
 }
@@ -141,7 +141,7 @@ static double small_change(const FcFrictionContact* contact, const FcVariableInf
     } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
         scale = moment;
     } else if (info->offset == offsetof(FcVariables, vibration.f)) {
-        scale *= fc_min(1.0, moment / fabs(contact->state.time));
+        scale *= fc_min(1.0, moment / fabs(contact->state.clock.time));
     }
     return scale > 0.0 ? ldexp(1.0, ilogb(part * scale)) : 0.0;
 }
@@ -209,8 +209,8 @@ static FcDirection direction_of(const FcFrictionContact* contact, const FcVariab
     const FcVibration* change = &along->vibration;
     FcDrive drive = {.vibration = *of};
     drive.vibration.V_1 = 1.0; // without it there would be no phase if nothing vibrates
-    fc_drive_start(&drive, contact->state.time, contact->state.time_rest);
-    const double time = contact->state.time + contact->state.time_rest;
+    fc_drive_start(&drive, contact->state.clock.time, contact->state.clock.rest);
+    const double time = contact->state.clock.time + contact->state.clock.rest;
     const double turn = drive.omega * (time * change->f / of->f + along->time);
     const double angle = drive.theta_0;
     const double across = angle + of->phase_2;

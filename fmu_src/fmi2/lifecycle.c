@@ -143,7 +143,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
         return fmi2Error;
     }
     instance->experiment.mode = FC_INITIALIZATION_MODE;
-    instance->contact.state.time = instance->experiment.start_time;
+    instance->contact.state.clock.time = instance->experiment.start_time;
     return fmi2OK;
 }
 
@@ -177,7 +177,7 @@ fmi2Status fmi2Terminate(fmi2Component c) {
     }
     instance->experiment.mode = FC_TERMINATED;
     fc_log(instance, FC_CALL_TERMINATE, fmi2OK, FC_LOG_EVENTS, "terminated at %s",
-           fc_quantity_text(instance->contact.state.time, "s").text);
+           fc_quantity_text(instance->contact.state.clock.time, "s").text);
     fc_log(instance, FC_CALL_TERMINATE, fmi2OK, FC_LOG_SOLVER, "%s evaluations since the start",
            fc_quantity_text(instance->contact.state.variables.solver.evaluations, "1").text);
     return fmi2OK;

@@ -35,7 +35,7 @@ static fmi2Status refuse_time(const FcInstance* instance, FcCall call, double ti
 }
 
 static bool is_before_stop(const FcInstance* instance, FcCall call) {
-    const double time = instance->contact.state.time;
+    const double time = instance->contact.state.clock.time;
     if (after_stop(instance, time) > 0.0) {
         refuse_time(instance, call, time);
         return false;

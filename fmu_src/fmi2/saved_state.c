@@ -135,7 +135,7 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
 
 // FcVariables alone has padding, and impossible_part checks each member of the others.
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
-                                              2 * sizeof(int) + sizeof(FcPast) + sizeof(FcOdeState),
+                                              4 * sizeof(int) + sizeof(FcPast) + sizeof(FcOdeState),
                "impossible_part must check a new member of FcFrictionState; padding needs a name");
 _Static_assert(sizeof(FcOdeState) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "impossible_part must check a new member of FcOdeState; padding needs a name");
@@ -245,8 +245,8 @@ static bool is_flag(int value) { return value == 0 || value == 1; }
 // Only a bounded bristle slips.
 static bool bristle_is_sound(const FcFrictionState* state) {
     const FcFriction* friction = &state->variables.friction;
-    const bool slips = state->bristle == FC_SLIPPING || state->bristle == FC_CATCHING_UP;
-    return state->bristle == FC_FREE || (slips && fc_is_bounded(friction));
+    const bool slips = state->bristle.state == FC_SLIPPING || state->bristle.state == FC_CATCHING_UP;
+    return state->bristle.state == FC_FREE || (slips && fc_is_bounded(friction));
 }
 
 // A mode is one that the interface has.
@@ -269,10 +269,12 @@ static const char* impossible_part(const FcSavedState* saved) {
             return info->name;
         }
     }
-    if (!are_finite(&friction->time, &friction->next_rate_set) || !is_flag(friction->next_rate_set)) {
+    if (!are_finite(&friction->clock, &friction->rates.next_is_set) ||
+        !is_flag(friction->rates.next_is_set) || friction->rates.no_hole != 0) {
         return "the time or a rate of an input";
     }
-    if (!are_finite(&friction->past, ode) || !bristle_is_sound(friction)) {
+    if (!are_finite(&friction->bristle.past, &friction->bristle.state) || !bristle_is_sound(friction) ||
+        friction->bristle.no_hole != 0) {
         return "what the last step left";
     }
     if (!are_finite(&ode->seen_time, ode + 1) || !is_flag(ode->changed) || ode->no_hole != 0) {

@@ -23,7 +23,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real* 
     if (!value) {
         return fc_refuse(instance, FC_CALL_GET_REAL_STATUS, "value is NULL");
     }
-    *value = instance->contact.state.time;
+    *value = instance->contact.state.clock.time;
     return fmi2OK;
 }
 

@@ -27,7 +27,7 @@ static bool check_step(const FcInstance* instance, double t, double h) {
                   fc_quantity_text(h, "s").text);
         return false;
     }
-    const double reached = instance->contact.state.time;
+    const double reached = instance->contact.state.clock.time;
     if (!(fabs(t - reached) <= rounding_of_time(reached, h))) {
         fc_refuse(instance, FC_CALL_DO_STEP, "currentCommunicationPoint = %s, but the instance is at %s",
                   fc_quantity_text(t, "s").text, fc_quantity_text(reached, "s").text);
@@ -51,10 +51,10 @@ static bool check_step(const FcInstance* instance, double t, double h) {
 // The end of a moving input must be a value that could also be set.
 static bool check_moving_inputs(const FcInstance* instance, double h) {
     const FcFrictionState* state = &instance->contact.state;
-    for (unsigned i = 0; state->next_rate_set && i < fc_inputs_count; i++) {
+    for (unsigned i = 0; state->rates.next_is_set && i < fc_inputs_count; i++) {
         const FcVariableInfo* info = &fc_variables[fc_inputs[i]];
         const double value = fc_variable_value(&state->variables, info);
-        const double end = value + state->next_rate[fc_variable_input(info)] * h;
+        const double end = value + state->rates.next[fc_variable_input(info)] * h;
         if (!fc_variable_allows(info, end)) {
             const bool has_min = info->min > -DBL_MAX;
             fc_refuse(

@@ -156,7 +156,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
         const FcVariableInfo* info = &fc_variables[vr[i]];
         value[i] = info->offset == offsetof(FcVariables, F_t_settled)   ? of_settled.x
                    : info->offset == offsetof(FcVariables, F_y_settled) ? of_settled.y
-                   : info->causality == FC_CAUSALITY_INDEPENDENT        ? instance->contact.state.time
+                   : info->causality == FC_CAUSALITY_INDEPENDENT        ? instance->contact.state.clock.time
                                                                         : *fc_variable_real(variables, info);
     }
     return fmi2OK;
@@ -180,7 +180,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
         const FcVariableInfo* info = &fc_variables[vr[i]];
         *fc_variable_real(&instance->contact.state.variables, info) = value[i];
         if (info->causality == FC_CAUSALITY_INPUT) { // its rate in the last step counts no longer
-            instance->contact.state.rate[fc_variable_input(info)] = 0.0;
+            instance->contact.state.rates.last[fc_variable_input(info)] = 0.0;
         }
         if (info->offset == offsetof(FcVariables, solver.tolerance)) {
             instance->experiment.tolerance_is_set = 1;

@@ -35,10 +35,10 @@ static FcSavedState full_state(void) {
         const double number = 1e-3 * (double)at;
         memcpy((char*)friction + at, &number, sizeof number);
     }
-    friction->next_rate_set = 1;
-    friction->bristle = FC_SLIPPING;
+    friction->rates.next_is_set = 1;
+    friction->bristle.state = FC_SLIPPING;
     friction->ode.changed = 0;
-    friction->ode.no_hole = 0;
+    friction->ode.no_hole = friction->rates.no_hole = friction->bristle.no_hole = 0;
     saved.experiment = (FcExperiment){.interface = FC_CO_SIMULATION,
                                       .mode = FC_STEP_COMPLETE,
                                       .tolerance_is_set = 1,
@@ -185,9 +185,9 @@ static void impossible_numbers_are_refused(fmi2Component c) {
     const struct {
         size_t at;
         int largest;
-    } flags[] = {{friction + offsetof(FcFrictionState, next_rate_set), 1},
+    } flags[] = {{friction + offsetof(FcFrictionState, rates.next_is_set), 1},
                  {friction + offsetof(FcFrictionState, ode.changed), 1},
-                 {friction + offsetof(FcFrictionState, bristle), FC_CATCHING_UP},
+                 {friction + offsetof(FcFrictionState, bristle.state), FC_CATCHING_UP},
                  {experiment + offsetof(FcExperiment, outputs_stale), 1},
                  {experiment + offsetof(FcExperiment, tolerance_is_set), 1},
                  {experiment + offsetof(FcExperiment, has_stop_time), 1}};

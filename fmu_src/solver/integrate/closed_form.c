@@ -69,7 +69,7 @@ static bool meets_in_part(FcIntegrator* integrator, double* end, double* path) {
     const double D = at.static_limit / at.sigma;
     const double moves = side * fc_drive_displacement(drive, t, *end);
     *path = fc_max(0.0, D - side * integrator->along.offset);
-    if (!(integrator->is_bounded && moves > *path)) {
+    if (!(integrator->bristle.is_bounded && moves > *path)) {
         return false;
     }
     // One with static friction that is at its bound and hardly moves breaks away only if it is pushed.
@@ -156,7 +156,7 @@ bool fc_take_closed_form(FcIntegrator* integrator) {
     case FC_SLIPS:
         return fc_may_stick(friction) && slips_surely(integrator);
     case FC_STICKS:
-        if (has_constant_coefficients && integrator->state == FC_FREE) {
+        if (has_constant_coefficients && integrator->bristle.state == FC_FREE) {
             stick_to_meeting(integrator);
             return true;
         }

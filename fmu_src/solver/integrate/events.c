@@ -30,7 +30,7 @@ static double rounding_of_push(const FcIntegrator* integrator, const double push
     for (int i = 0; i < POINTS; i++) {
         largest = fc_max(largest, fabs(push[i]));
     }
-    return (integrator->is_stalled ? LITTLE_PUSH : ROUNDING_OF_PUSH) * largest;
+    return (integrator->bristle.is_stalled ? LITTLE_PUSH : ROUNDING_OF_PUSH) * largest;
 }
 
 bool fc_is_unloading(const FcIntegrator* integrator, FcVector n) {
@@ -54,7 +54,7 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
     const double t = integrator->at.t;
     const FcPhase phase = fc_drive_phase(&plane->scene->drive, t);
     const FcPlaneCoefficients at = fc_plane_coefficients(plane, t, phase);
-    const FcPlaneBound held = fc_plane_bound(plane, &at, integrator->state, t, phase);
+    const FcPlaneBound held = fc_plane_bound(plane, &at, integrator->bristle.state, t, phase);
     const FcVector delta = fc_integrator_delta(integrator);
     const FcVector n = direction(delta);
     const double push = fc_plane_push(plane, &at, &held, n);
@@ -64,12 +64,13 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
     // The energy that it loses is heat, also that of its small error_ratio over the bound.
     const double size = hypot(delta.x, delta.y);
     const double D = fc_plane_radius(plane, &at, FC_SLIPPING);
-    integrator->heat += fc_drop_heat(at.sigma, size, D);
-    integrator->drag += (D - size) * fc_product(n, at.V);
+    integrator->sums.heat += fc_drop_heat(at.sigma, size, D);
+    integrator->sums.drag += (D - size) * fc_product(n, at.V);
     fc_set_delta(integrator, (FcVector){D * n.x, D * n.y});
-    integrator->meetings++;
-    integrator->touches = integrator->state != FC_FREE || !fc_has_static_friction(plane->scene->friction);
-    integrator->state = surely || !fc_is_unloading(integrator, n) ? FC_SLIPPING : FC_FREE;
+    integrator->sums.meetings++;
+    integrator->bristle.touches =
+        integrator->bristle.state != FC_FREE || !fc_has_static_friction(plane->scene->friction);
+    integrator->bristle.state = surely || !fc_is_unloading(integrator, n) ? FC_SLIPPING : FC_FREE;
     integrator->h = 0.0;
     // In the plane its direction relaxes.
     const double turning = at.sigma * D * fabs(fc_across(n, at.V));
@@ -81,8 +82,8 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
 }
 
 void fc_end_slip(FcIntegrator* integrator) {
-    integrator->touches = false;
-    integrator->state = FC_FREE;
+    integrator->bristle.touches = false;
+    integrator->bristle.state = FC_FREE;
 }
 
 // ---- a free bristle ----
@@ -91,7 +92,7 @@ void fc_end_slip(FcIntegrator* integrator) {
 static void find_to_bound(const FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel) {
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
-        const double D = fc_plane_radius(integrator->plane, &at, integrator->state);
+        const double D = fc_plane_radius(integrator->plane, &at, integrator->bristle.state);
         panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
     }
 }
@@ -127,7 +128,7 @@ static double top_at_bound(const FcIntegrator* integrator, const FcNodes* nodes,
     bool falls = false; // a top is not before a point that is higher than all before it
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
-        const double D = fc_plane_radius(integrator->plane, &at, integrator->state);
+        const double D = fc_plane_radius(integrator->plane, &at, integrator->bristle.state);
         is_near = is_near || panel->to_bound[i] > -0.5 * D * D;
         falls = falls || (i < STAGES && panel->to_bound[i] < panel->to_bound[i > 0 ? i - 1 : START]);
     }
@@ -138,7 +139,7 @@ static double top_at_bound(const FcIntegrator* integrator, const FcNodes* nodes,
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
         const FcPlaneBound held =
-            fc_plane_bound(integrator->plane, &at, integrator->state, nodes->t[i], nodes->phase[i]);
+            fc_plane_bound(integrator->plane, &at, integrator->bristle.state, nodes->t[i], nodes->phase[i]);
         const FcVector n = {panel->delta[i].x / held.D, panel->delta[i].y / held.D};
         recedes[i] = -fc_plane_push(integrator->plane, &at, &held, n);
     }
@@ -157,7 +158,7 @@ static double stuck_to_bound(void* context, double u) {
         delta.y += fc_drive_displacement(&integrator->across, integrator->at.t, t);
     }
     const FcPlaneCoefficients at = fc_coefficients_at(integrator, t);
-    const double D = fc_plane_radius(integrator->plane, &at, integrator->state);
+    const double D = fc_plane_radius(integrator->plane, &at, integrator->bristle.state);
     return fc_product(delta, delta) - D * D;
 }
 
@@ -192,7 +193,7 @@ static double place_of_meeting(FcIntegrator* integrator, const FcPanel* panel, d
 static double end_of_push(const FcIntegrator* integrator, const double push[POINTS]) {
     const double rounding = rounding_of_push(integrator, push);
     double inwards[POINTS];
-    bool is_pushed = integrator->is_stalled;
+    bool is_pushed = integrator->bristle.is_stalled;
     for (int i = 0; i < POINTS; i++) {
         inwards[i] = -push[i];
         is_pushed = is_pushed || push[i] > rounding;
@@ -233,12 +234,14 @@ static bool cut_at_meeting(FcIntegrator* integrator, FcNodes* nodes, FcPanel* pa
     for (int cuts = 0; cuts < MAX_CUTS; cuts++) {
         find_to_bound(integrator, nodes, panel);
         const FcPlaneCoefficients begin = fc_nodes_at(nodes, START);
-        const double D_begin = fc_plane_radius(integrator->plane, &begin, integrator->state);
-        if (integrator->touches && panel->to_bound[START] <= 4.0 * FC_ROUNDING_OF_BOUND * D_begin * D_begin) {
+        const double D_begin = fc_plane_radius(integrator->plane, &begin, integrator->bristle.state);
+        if (integrator->bristle.touches &&
+            panel->to_bound[START] <= 4.0 * FC_ROUNDING_OF_BOUND * D_begin * D_begin) {
             panel->to_bound[START] = fc_min(panel->to_bound[START], 0.0); // by rounding it may begin beyond
         }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
-        *over = close_to_bound(integrator, fc_plane_radius(integrator->plane, &end, integrator->state));
+        *over =
+            close_to_bound(integrator, fc_plane_radius(integrator->plane, &end, integrator->bristle.state));
         const double meets = is_exact ? 2.0 : FC_FASTEST(fc_first_upcrossing)(panel->to_bound, *over);
         const double top = meets > 1.0 ? top_at_bound(integrator, nodes, panel) : 2.0;
         if (meets > 1.0 && top > 1.0) {
@@ -253,31 +256,32 @@ static bool cut_at_meeting(FcIntegrator* integrator, FcNodes* nodes, FcPanel* pa
 }
 
 void fc_free_until_event(FcIntegrator* integrator) {
-    assert(integrator->state != FC_SLIPPING);
-    if (integrator->state == FC_CATCHING_UP &&
+    assert(integrator->bristle.state != FC_SLIPPING);
+    if (integrator->bristle.state == FC_CATCHING_UP &&
         fc_is_unloading(integrator, direction(fc_integrator_delta(integrator)))) {
         fc_end_slip(integrator);
         return;
     }
-    if (integrator->touches && fc_begin_slip(integrator, integrator->is_stalled)) {
+    if (integrator->bristle.touches && fc_begin_slip(integrator, integrator->bristle.is_stalled)) {
         return;
     }
     FcNodes nodes;
     FcPanel panel;
     double h = fc_step_adaptive(integrator, &nodes, &panel);
-    if (!integrator->is_bounded) {
+    if (!integrator->bristle.is_bounded) {
         fc_accept_panel(integrator, &nodes, &panel, h);
         return;
     }
-    const bool gives_up = integrator->state == FC_CATCHING_UP && catches_up(integrator, &nodes, &panel, &h);
+    const bool gives_up =
+        integrator->bristle.state == FC_CATCHING_UP && catches_up(integrator, &nodes, &panel, &h);
     double over = 0.0;
     const bool is_cut = cut_at_meeting(integrator, &nodes, &panel, &h, &over);
     fc_accept_panel(integrator, &nodes, &panel, h);
-    integrator->touches = panel.to_bound[LAST] >= -over;
+    integrator->bristle.touches = panel.to_bound[LAST] >= -over;
     if (gives_up && !is_cut) {
         fc_end_slip(integrator);
     }
-    if (is_cut && !integrator->touches) {
+    if (is_cut && !integrator->bristle.touches) {
         integrator->h = 4.0 * h; // the panel was too long for its points
     }
 }
@@ -288,7 +292,7 @@ void fc_free_until_event(FcIntegrator* integrator) {
 // changes as D does, and by the panel's z.
 static void turn_derivatives(FcIntegrator* integrator, FcVector start, FcVector end) {
     for (int k = 0; k < 2; k++) {
-        FcVector* by = &integrator->by_start[k];
+        FcVector* by = &integrator->sums.by_start[k];
         const double turned = fc_across(start, *by) / fc_product(start, start);
         *by = (FcVector){-turned * end.y, turned * end.x};
     }
@@ -307,7 +311,7 @@ static bool cut_at_end_of_push(FcIntegrator* integrator, FcNodes* nodes, FcPanel
 }
 
 void fc_slip_until_event(FcIntegrator* integrator) {
-    assert(integrator->state == FC_SLIPPING);
+    assert(integrator->bristle.state == FC_SLIPPING);
     const bool is_one_dimensional = integrator->plane->is_one_dimensional;
     FcNodes nodes;
     FcPanel panel;
@@ -317,7 +321,7 @@ void fc_slip_until_event(FcIntegrator* integrator) {
     }
     // A push of 0 at the start decides just after.
     double ends = end_of_push(integrator, panel.to_bound);
-    if (ends > 0.0 && !integrator->is_stalled &&
+    if (ends > 0.0 && !integrator->bristle.is_stalled &&
         panel.to_bound[START] <= rounding_of_push(integrator, panel.to_bound) &&
         fc_is_unloading(integrator, direction(fc_integrator_delta(integrator)))) {
         ends = 0.0;

@@ -17,10 +17,10 @@ static const double OF_NEWTON = 2.0;
 
 FcKind fc_kind(const FcIntegrator* integrator) {
     const FcFriction* friction = integrator->interval->scene->friction;
-    return !fc_has_bristle(friction) || integrator->is_rigid ? FC_NO_BRISTLE
-           : integrator->state == FC_SLIPPING          ? FC_SLIPS
-           : fc_may_stick(friction)               ? FC_STICKS
-                                                       : FC_RELAXES;
+    return !fc_has_bristle(friction) || integrator->bristle.is_rigid ? FC_NO_BRISTLE
+           : integrator->bristle.state == FC_SLIPPING          ? FC_SLIPS
+           : fc_may_stick(friction)                       ? FC_STICKS
+                                                               : FC_RELAXES;
 }
 
 FcVector fc_integrator_delta(const FcIntegrator* integrator) {
@@ -67,8 +67,8 @@ void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const
                                  .interval = interval,
                                  .parts = workspace->parts,
                                  .remaining_path = workspace->remaining_path,
-                                 .is_bounded = fc_is_bounded(interval->scene->friction),
-                                 .by_start = {{1.0, 0.0}, {0.0, 1.0}},
+                                 .bristle.is_bounded = fc_is_bounded(interval->scene->friction),
+                                 .sums.by_start = {{1.0, 0.0}, {0.0, 1.0}},
                                  .evaluations = evaluations};
     if (!plane->is_one_dimensional) {
         integrator->evaluations += OF_MINIMA;
@@ -105,7 +105,7 @@ void fc_begin_part(FcIntegrator* integrator, int number) {
 
 void fc_choose_variable(FcIntegrator* integrator) {
     const FcTimeMap graded = integrator->parts[integrator->number].in;
-    const bool sticks = fc_kind(integrator) == FC_STICKS && integrator->state == FC_FREE;
+    const bool sticks = fc_kind(integrator) == FC_STICKS && integrator->bristle.state == FC_FREE;
     const FcTimeMap wanted = sticks ? (FcTimeMap){0.0, INFINITY} : graded;
     if (wanted.length != integrator->part.in.length) {
         take_variable(integrator, wanted);
@@ -220,8 +220,8 @@ void fc_accept_panel(FcIntegrator* integrator, const FcNodes* nodes, FcPanel* pa
     integrator->control.log_transient -= fc_max(0.0, panel->z);
     const double kept = integrator->plane->is_one_dimensional ? 1.0 : exp(-panel->z); // of a deviation
     for (int k = 0; k < 2; k++) {
-        integrator->by_start[k].x *= kept;
-        integrator->by_start[k].y *= kept;
+        integrator->sums.by_start[k].x *= kept;
+        integrator->sums.by_start[k].y *= kept;
     }
     // The rest of rounding is the part's.
     const double next = integrator->at.u + h;
@@ -240,9 +240,9 @@ void fc_accept_closed_form(FcIntegrator* integrator, const FcMap* map, double t)
 }
 
 void fc_note_slip(FcIntegrator* integrator, double start, double end, int side) {
-    if (end - start > integrator->slip_length) {
-        integrator->slip_length = end - start;
-        integrator->slip_time = 0.5 * (start + end);
-        integrator->slip_side = side;
+    if (end - start > integrator->sums.slip_length) {
+        integrator->sums.slip_length = end - start;
+        integrator->sums.slip_time = 0.5 * (start + end);
+        integrator->sums.slip_side = side;
     }
 }

@@ -1,4 +1,4 @@
-// Crossing a part of the interval, panel by panel: what all motions have in common.
+// The integrator: it takes the parts of an interval panel by panel. What all motions have in common.
 #ifndef FC_SOLVER_INTEGRATE_INTEGRATOR_H
 #define FC_SOLVER_INTEGRATE_INTEGRATOR_H
 
@@ -18,32 +18,36 @@ typedef struct {
     double end, length_u;   // of the part, in u
     double h;               // of the next panel, in u; 0 if nothing proposes one
     double* remaining_path; // m, the path after each part, at the least; found if it is needed
-    // The bristle, and the sums.
+    // The motion up to that place.
     FcMap along, across_map;
     FcPanelStart from; // of the next panel, and whether the maps are for any start
     double scale;      // m, of all these starts
-    FcBristleState state;
-    bool touches; // a free bristle is at its bound
-    bool is_bounded;
-    bool is_stalled; // at an event that rounding hides: a little push counts as none, and then it slips
-    bool is_rigid;   // rounding cannot see the bristle's length beside the path: its force is Coulomb's
-    int meetings;
-    double heat;          // J, of break-away
-    double drag;          // m2/s, of its drops
-    FcVector by_start[2]; // as in FcStepResult
-    double slip_length;   // s, of the longest slip so far, and
-    double slip_time;     // s
-    int slip_side;
+    struct {
+        FcBristleState state;
+        bool touches;    // it is free and at its bound: whether it is pushed decides next
+        bool is_bounded; // it may meet a bound
+        bool is_stalled; // at an event that rounding hides: a little push counts as none, and then it slips
+        bool is_rigid;   // rounding cannot see its length beside the path: its force is Coulomb's
+    } bristle;
+    struct {
+        int meetings;         // of the bristle with its bound
+        double heat;          // J, of break-away
+        double drag;          // m2/s, of its drops
+        FcVector by_start[2]; // as in FcStepResult
+        double slip_length;   // s, of the longest slip, which lasts
+        double slip_time;     // s, into the interval, its middle
+        int slip_side;
+    } sums;
     double evaluations;
 } FcIntegrator;
 
-// The memory of the parts of a integrator, which is filled as far as there are any.
+// The memory of the parts of an integrator, which is filled as far as there are any.
 typedef struct {
     FcPart parts[FC_MAX_PARTS];
     double remaining_path[FC_MAX_PARTS];
 } FcWorkspace;
 
-// A integrator of the interval from its start on, with its parts, or in one part; the bristle is to be set.
+// An integrator of the interval from its start on, with its parts, or in one part; the bristle is to be set.
 void fc_integrator_start(FcIntegrator* integrator, FcWorkspace* workspace, const FcPlane* plane,
                          const FcInterval* interval, bool in_one_part, double evaluations);
 

@@ -81,14 +81,14 @@ static void integrate_part(FcIntegrator* integrator, int number) {
         }
         const double before = integrator->at.u;
         if (!fc_take_closed_form(integrator)) {
-            if (integrator->state == FC_SLIPPING) {
+            if (integrator->bristle.state == FC_SLIPPING) {
                 fc_slip_until_event(integrator);
             } else {
                 fc_free_until_event(integrator);
             }
         }
         stalled = integrator->at.u - before > PROGRESS * integrator->length_u ? 0 : stalled + 1;
-        integrator->is_stalled = stalled > FC_MAX_REJECTIONS;
+        integrator->bristle.is_stalled = stalled > FC_MAX_REJECTIONS;
         if (stalled > 2 * FC_MAX_REJECTIONS) {
             pass_over_rounding(integrator, before, stalled);
         }
@@ -108,7 +108,8 @@ static bool may_be_rigid(const FcInterval* interval) {
 static void choose_rigid(FcIntegrator* integrator) {
     if (may_be_rigid(integrator->interval)) {
         fc_begin_part(integrator, 0);
-        integrator->is_rigid = integrator->interval->saturation <= RIGID * fc_path_left(integrator, 0.0);
+        integrator->bristle.is_rigid =
+            integrator->interval->saturation <= RIGID * fc_path_left(integrator, 0.0);
     }
 }
 
@@ -150,16 +151,16 @@ static void end_on_bound(FcIntegrator* integrator) {
         F.x = integrator->part.side * end.limit;
     }
     fc_set_delta(integrator, (FcVector){F.x / end.sigma, F.y / end.sigma});
-    integrator->state =
+    integrator->bristle.state =
         fc_may_stick(integrator->interval->scene->friction) ? FC_SLIPPING : FC_FREE;
-    integrator->meetings += integrator->is_bounded;
+    integrator->sums.meetings += integrator->bristle.is_bounded;
 }
 
 static void integrate(FcIntegrator* integrator) {
     for (int i = 0; i < integrator->count; i++) {
         integrate_part(integrator, i);
     }
-    if (integrator->is_rigid) {
+    if (integrator->bristle.is_rigid) {
         end_on_bound(integrator);
     }
 }
@@ -171,12 +172,12 @@ static void begin_at_bound(FcIntegrator* integrator, FcBristle bristle) {
     const bool has_broken_away = fc_has_broken_away(friction, bristle.state);
     const double size = fc_size(bristle);
     const double D = fc_plane_radius(integrator->plane, &integrator->first, bristle.state);
-    integrator->state = has_broken_away ? FC_CATCHING_UP : FC_FREE;
-    if (integrator->is_bounded && fc_has_static_friction(friction) && !has_broken_away) {
-        integrator->touches = size >= D * (1.0 - FC_ROUNDING_OF_BOUND);
-    } else if (integrator->is_bounded && size >= D * (1.0 - 1e-13)) {
-        integrator->state = FC_SLIPPING;
-        integrator->meetings = 1;
+    integrator->bristle.state = has_broken_away ? FC_CATCHING_UP : FC_FREE;
+    if (integrator->bristle.is_bounded && fc_has_static_friction(friction) && !has_broken_away) {
+        integrator->bristle.touches = size >= D * (1.0 - FC_ROUNDING_OF_BOUND);
+    } else if (integrator->bristle.is_bounded && size >= D * (1.0 - 1e-13)) {
+        integrator->bristle.state = FC_SLIPPING;
+        integrator->sums.meetings = 1;
     }
 }
 
@@ -185,16 +186,16 @@ static void put_result(const FcIntegrator* integrator, FcStepResult* result) {
     if (!integrator->plane->is_one_dimensional) {
         fc_map_apply_across(&integrator->across_map, result);
     }
-    result->heat += integrator->heat;
-    result->drag += integrator->drag;
-    result->meetings += integrator->meetings;
-    result->state = integrator->state;
-    if (integrator->slip_length > 0.0) {
-        result->slip_time = integrator->slip_time;
-        result->slip_side = integrator->slip_side;
+    result->heat += integrator->sums.heat;
+    result->drag += integrator->sums.drag;
+    result->meetings += integrator->sums.meetings;
+    result->state = integrator->bristle.state;
+    if (integrator->sums.slip_length > 0.0) {
+        result->slip_time = integrator->sums.slip_time;
+        result->slip_side = integrator->sums.slip_side;
     }
-    result->by_start[0] = integrator->by_start[0];
-    result->by_start[1] = integrator->by_start[1];
+    result->by_start[0] = integrator->sums.by_start[0];
+    result->by_start[1] = integrator->sums.by_start[1];
     result->evaluations = integrator->evaluations;
 }
 
@@ -226,7 +227,7 @@ static void march(const FcInterval* interval, FcStepResult* result) {
     FcIntegrator integrator;
     const bool sticks = stays_stuck(interval, bristle);
     fc_integrator_start(&integrator, &workspace, &plane, interval, sticks, result->evaluations);
-    integrator.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
+    integrator.bristle.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
     fc_set_delta(&integrator, (FcVector){bristle.delta, bristle.delta_y});
     choose_rigid(&integrator);
     if (fc_kind(&integrator) == FC_NO_BRISTLE) { // the deflection stands meanwhile
@@ -273,7 +274,7 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
         fc_integrator_start(&integrator, &workspace, &plane, &of[i], false, *evaluations);
         choose_rigid(&integrator);
         integrator.from.for_any = true;
-        integrator.is_bounded = false;
+        integrator.bristle.is_bounded = false;
         integrator.scale = fc_max(start, integrator.first.limit / integrator.first.sigma);
         start_control(&integrator, integrator.scale);
         integrate(&integrator);
