@@ -229,8 +229,8 @@ static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
     }
 }
 
-// Takes the state from the past to the present inputs, and sets the regime and the new past.
-static void begin_regime(FcFrictionContact* contact) {
+// Takes the state from the past to the present inputs, and sets the state and the new past.
+static void begin_state(FcFrictionContact* contact) {
     FcFrictionState* state = &contact->state;
     BoundView now;
     update_x(contact, &now);
@@ -275,7 +275,7 @@ void fc_ode_event_begins(FcFrictionContact* contact) {
     FcMessage ignored;
     if (fc_friction_contact_check(contact, &ignored)) {
         const FcVector before = {v->delta, v->delta_y};
-        begin_regime(contact);
+        begin_state(contact);
         add_drop(contact, before);
     }
 }
@@ -286,7 +286,7 @@ bool fc_ode_update(FcFrictionContact* contact, bool* changed, bool* nominals_cha
         return false;
     }
     FcOdeState* ode = &contact->state.ode;
-    begin_regime(contact);
+    begin_state(contact);
     *changed = ode->changed;
     *nominals_changed = nominals[0] != ode->nominal_delta || nominals[1] != ode->nominal_energy;
     ode->changed = 0;

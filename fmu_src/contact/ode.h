@@ -1,7 +1,7 @@
 // One contact as a differential equation with events: the physics of FMI for model exchange. The states are
 // delta, W_f, Q_f and delta_y. The inputs have their present values.
 //
-// A bounded bristle is in a regime (model/motion.h) that changes only in fc_ode_update, at an event. It
+// A bounded bristle is in a state (model/bound.h) that changes only in fc_ode_update, at an event. It
 // slips once it is beyond its bound and pushed. It is free again once the push ends. With static friction it
 // breaks away and drops to the kinetic bound. A contact opens and closes at events, too. All events have a
 // little hysteresis, so that the rounding of an event's time starts no second event. The motion between two
@@ -44,7 +44,7 @@ bool fc_ode_refresh(FcFrictionContact* contact, FcMessage* message);
 // The first may have either sign. False as fc_ode_refresh.
 bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT], FcMessage* message);
 
-// Call after each completed step of the integrator: stores the inputs. True if the regime has ended. False
+// Call after each completed step of the integrator: stores the inputs. True if the state has ended. False
 // also if the inputs are not a valid combination; the next evaluation reports this.
 bool fc_ode_step_completed(FcFrictionContact* contact);
 

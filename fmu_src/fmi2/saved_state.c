@@ -13,7 +13,7 @@
 #include "fmi2/variables.h"
 
 // Counted from 1. It increases with every change of FcSavedState that the guid does not tell.
-enum { LAYOUT = 7 };
+enum { LAYOUT = 8 };
 
 FcSavedStateHead fc_saved_state_head(void) {
     FcSavedStateHead head = {.magic = "FRICTION", .layout = LAYOUT, .size = FC_SAVED_STATE_BYTES};

@@ -1,5 +1,5 @@
 // SUNDIALS CVODE: variable-order BDF of the contact as model exchange states it (model/motion.h): its motion,
-// whose derivatives are the Jacobian, and the events that end a regime.
+// whose derivatives are the Jacobian, and the events that end a state of the bristle.
 //
 // CVODE is started anew at every event and at the reversals of V, in a time that begins at 0: it never steps
 // over a kink, and no history outlives a step. The errors have absolute bounds, because an error of the
@@ -43,8 +43,8 @@
 // The states: the deflection, and the integrals of FcStepResult; with a mass what F_t adds to its position.
 enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, POSITION, MAX_STATES };
 
-// Indicators of events: those of a regime; with a mass w, and the slope of F_t over the rate of w.
-enum { OF_REGIME = 0, REVERSAL = 2, JUMP = 3, MAX_INDICATORS = 4 };
+// Indicators of events: those of a state of the bristle; with a mass w, and the slope of F_t over the rate of w.
+enum { OF_STATE = 0, REVERSAL = 2, JUMP = 3, MAX_INDICATORS = 4 };
 
 struct FcCvode {
     SUNContext context;
@@ -54,10 +54,10 @@ struct FcCvode {
     SUNLinearSolver linear_solver;
     void* cvode;
     int states; // their number
-    // The present regime, for the callbacks.
+    // The present state of the bristle, for the callbacks.
     FcScene scene; // without damping, which is not a part of the result
     FcFriction friction;
-    double start; // s, local time at which the regime starts; CVODE's time is 0 there
+    double start; // s, local time at which the state starts; CVODE's time is 0 there
     FcBristleState state;
     double evaluations; // of the motion
     char reason[160];   // CVODE's last error message
@@ -216,7 +216,7 @@ static int indicators(realtype tau, N_Vector y, realtype* z, void* user) {
         z[JUMP] = inertia_of(solver, bristle, &now);
         add_acceleration(solver, solver->start + tau, bristle, &now);
     }
-    fc_bound_indicators(&now, bristle, &z[OF_REGIME]);
+    fc_bound_indicators(&now, bristle, &z[OF_STATE]);
     return 0;
 }
 
@@ -341,7 +341,7 @@ static void put(FcCvode* solver, FcStepResult* now) {
     }
 }
 
-// The scene at the start of a regime.
+// The scene at the start of a state of the bristle.
 static FcScene scene_with(FcCvode* solver, FcStepResult* now) {
     put(solver, now);
     double impulse;
@@ -352,8 +352,8 @@ static FcScene scene_with(FcCvode* solver, FcStepResult* now) {
     return scene;
 }
 
-// Begins the regime that the bristle has at the time t [s].
-static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
+// Begins the state that the bristle has at the time t [s].
+static void begin_state(FcCvode* solver, double t, FcStepResult* now) {
     solver->start = t;
     FcScene scene = scene_with(solver, now);
     if (has_body(solver) && fc_has_static_friction(scene.friction)) {
@@ -376,9 +376,9 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     put(solver, now);
 }
 
-// Integrates from the start of the regime up to its end, or for duration [s]; returns the time taken [s], NaN
+// Integrates from the start of the state up to its end, or for duration [s]; returns the time taken [s], NaN
 // if CVODE fails.
-static double integrate_regime(FcCvode* solver, double duration) {
+static double integrate_state(FcCvode* solver, double duration) {
     void* cvode = solver->cvode;
     const double parts = STEPS_PER_PERIOD * periods_of(&solver->scene.drive, duration);
     snprintf(solver->reason, sizeof solver->reason, "%s", "too much work in one step");
@@ -419,9 +419,9 @@ static bool integrate(FcCvode* solver, const FcScene* scene, const FcSolverOptio
     set_allowed(solver, scene, options, h);
     FcStepResult now = *result;
     for (*t = 0.0; *t < h;) {
-        begin_regime(solver, *t, &now);
+        begin_state(solver, *t, &now);
         const double stop = has_body(solver) ? h : fc_drive_next_event(&scene->drive, *t, h).time;
-        const double taken = integrate_regime(solver, stop - *t);
+        const double taken = integrate_state(solver, stop - *t);
         if (!isfinite(taken)) {
             return false;
         }

@@ -31,7 +31,7 @@ double fc_body_acceleration(const FcScene* scene, FcBristle bristle, const FcBod
 FcScene fc_body_scene(const FcScene* scene, const FcBody* body, FcBristle bristle) {
     FcScene seen = *scene;
     seen.drive.V.value += body->v;
-    if fc_has_bristle((seen.friction)) {
+    if (fc_has_bristle(seen.friction)) {
         const bool slips = fc_has_broken_away(seen.friction, bristle.state);
         bristle.state = slips ? FC_SLIPPING : fc_bristle_state(&seen, bristle);
         seen.drive.V.rate += fc_body_acceleration(&seen, bristle, body, body->F.value);

@@ -18,9 +18,9 @@ static const double OF_NEWTON = 2.0;
 FcKind fc_kind(const FcIntegrator* integrator) {
     const FcFriction* friction = integrator->interval->scene->friction;
     return !fc_has_bristle(friction) || integrator->bristle.is_rigid ? FC_NO_BRISTLE
-           : integrator->bristle.state == FC_SLIPPING          ? FC_SLIPS
-           : fc_may_stick(friction)                       ? FC_STICKS
-                                                               : FC_RELAXES;
+           : integrator->bristle.state == FC_SLIPPING                ? FC_SLIPS
+           : fc_may_stick(friction)                                  ? FC_STICKS
+                                                                     : FC_RELAXES;
 }
 
 FcVector fc_integrator_delta(const FcIntegrator* integrator) {

@@ -151,8 +151,7 @@ static void end_on_bound(FcIntegrator* integrator) {
         F.x = integrator->part.side * end.limit;
     }
     fc_set_delta(integrator, (FcVector){F.x / end.sigma, F.y / end.sigma});
-    integrator->bristle.state =
-        fc_may_stick(integrator->interval->scene->friction) ? FC_SLIPPING : FC_FREE;
+    integrator->bristle.state = fc_may_stick(integrator->interval->scene->friction) ? FC_SLIPPING : FC_FREE;
     integrator->sums.meetings += integrator->bristle.is_bounded;
 }
 
@@ -213,8 +212,8 @@ static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
     const double h = interval->duration;
     const double farthest = fc_size(bristle) + longest_way(&scene->drive, h);
     const double D = fc_static_ratio(scene->friction) * fc_scene_smallest_saturation(scene, h);
-    return fc_may_stick(scene->friction) &&
-           !fc_has_broken_away(scene->friction, bristle.state) && farthest < (1.0 - 1e-9) * D;
+    return fc_may_stick(scene->friction) && !fc_has_broken_away(scene->friction, bristle.state) &&
+           farthest < (1.0 - 1e-9) * D;
 }
 
 static void march(const FcInterval* interval, FcStepResult* result) {
