@@ -7,7 +7,7 @@
 #include "fmi2/saved_state.h"
 #include "fmi2/variables.h"
 
-enum { MAX_BYTES = 4096, LAYOUT = 7 };
+enum { MAX_BYTES = 4096, LAYOUT = 8 };
 
 static void silent(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
                    fmi2String category, fmi2String text, ...) {
