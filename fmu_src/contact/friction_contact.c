@@ -701,7 +701,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcScene* end = ends_elsewhere ? &moved : &scene;
     FcVector force;
-    const bool slips = result.state == FC_SLIPPING && !fc_scene_is_separated(end);
+    const bool slips = h > 0.0 && result.state == FC_SLIPPING && !fc_scene_is_separated(end);
     const FcBristle reached =
         slips ? fc_scale_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
     if (!find_force(end, &response, &body, reached, &force, message)) {

@@ -52,8 +52,13 @@ FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle) {
         bristle = moved_onto(&of, bristle);
     }
     // A bristle with a push of 0 remains slipping. Its motion decides whether it sticks.
-    if (bristle.state != FC_FREE && push(&of) < 0.0) {
-        bristle.state = FC_FREE;
+    if (bristle.state != FC_FREE) {
+        const bool on_bound = fc_size(bristle) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
+        const bool catches_up = fc_has_broken_away(scene->friction, bristle.state) && !on_bound;
+        bristle.state = push(&of) < 0.0 ? FC_FREE
+                        : catches_up    ? FC_CATCHING_UP
+                        : on_bound      ? FC_SLIPPING
+                                        : FC_FREE;
     }
     return bristle;
 }
