@@ -147,7 +147,7 @@ bool fc_make_panel(FcIntegrator* integrator, double h, FcNodes* nodes, FcPanel* 
     FcPanelStart* from = &integrator->from;
     find_ways(integrator);
     from->delta = fc_integrator_delta(integrator);
-    from->scale = from->for_any ? (1.0 - integrator->along.relaxation) * integrator->scale : 0.0;
+    from->scale = from->for_any ? fabs(1.0 - integrator->along.relaxation) * integrator->scale : 0.0;
     const FcPlane* plane = integrator->plane;
     FC_FASTEST(fc_nodes_make)(plane, &integrator->part, integrator->at.u, h, nodes);
     integrator->evaluations +=
