@@ -66,6 +66,7 @@ FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E)
     } else {
         at.stiffness_0 = p->stiffnessScale * E * at.area_0 * at.area_0; // Eq. 3
     }
+    assert(!(at.decay <= 0.0 || at.area_0 < 0.0 || at.load_0 < 0.0 || at.stiffness_0 < 0.0));
     return at;
 }
 
@@ -79,6 +80,7 @@ double fc_contact_decayed(const FcContactAtModulus* c, double d) {
 }
 
 static double stiffness(const FcContactAtModulus* c, double d, double e) {
+    assert(!(e <= 0.0));
     switch (c->model) {
     case FC_CONTACT_CONSTANT:
         return c->stiffness_0;
@@ -104,6 +106,7 @@ FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d) {
     const double sigma = c->model == FC_CONTACT_CONSTANT  ? 0.0
                          : c->model == FC_CONTACT_MINDLIN ? -c->decay
                                                           : -(2.0 * c->decay + 3.0 / d);
+    assert(!(sigma > 0.0)); // it falls with the separation
     return (FcContactLogSlope){.sigma = sigma, .A_r = -c->decay, .F_n = -c->decay};
 }
 
@@ -131,9 +134,12 @@ FcContactLogSlope fc_contact_slope_by_E(const FcContactParameters* p, double E) 
         const double total = radius.elastic + radius.plastic;
         slope.sigma = (1.0 + (total > 0.0 ? x * (radius.plastic - boundary) / total : 0.0)) / E;
     }
+    assert(!(slope.A_r < 0.0 || fabs(slope.F_n) * E > 2.0 ||
+             fabs(slope.sigma) * E > 2.2)); // as interval.c takes them
     return slope;
 }
 
 double fc_contact_log_swell(const FcContactAtModulus* c, double a_d) {
+    assert(!(a_d < 0.0));
     return fc_log_bessel_I0(c->decay * a_d);
 }

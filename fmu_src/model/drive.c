@@ -20,6 +20,7 @@ static double phase_in_cycles(double f, double t) {
 
 void fc_drive_start(FcDrive* drive, double start, double rest) {
     const FcVibration* vibration = &drive->vibration;
+    assert(!(vibration->V_1 < 0.0 || vibration->V_2 < 0.0 || vibration->a_d < 0.0));
     drive->omega = drive->theta_0 = 0.0;
     drive->cos_phase_d = drive->sin_phase_d = drive->cos_phase_2 = drive->sin_phase_2 = 0.0;
     if (fc_drive_vibrates(drive)) {
@@ -165,6 +166,7 @@ FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
 }
 
 double fc_velocity_time_of_change(const FcVelocity* at, double change) {
+    assert(!(change < 0.0));
     const double time = fc_time_to_move(fabs(at->rate), fabs(at->curvature), change);
     const double third = fabs(at->third);
     return third == 0.0 || third * time * time * time <= 6.0 * change ? time : cbrt(6.0 * change / third);
@@ -180,6 +182,7 @@ double fc_input_min(FcLinearInput input, double h) { return fc_min(input.value, 
 double fc_input_max(FcLinearInput input, double h) { return fc_max(input.value, linear(input, h)); }
 
 double fc_drive_largest_speed(const FcDrive* drive, double h) {
+    assert(!(h < 0.0));
     const double along = fc_max(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
     if (!fc_drive_is_planar(drive)) {
         return along;
@@ -214,6 +217,7 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
 // The integral of tau sin(omega tau) over an interval centred at tau = 0, s being omega times half its
 // length. It vanishes like s^3.
 static double sine_moment(double omega, double s) {
+    assert(omega > 0.0);
     return s > 0.1 ? 2.0 * (sin(s) - s * cos(s)) / (omega * omega)
                    : 2.0 * s * s * s * (1.0 / 3 - s * s * (1.0 / 30 - s * s * (1.0 / 840 - s * s / 45360))) /
                          (omega * omega);
@@ -255,6 +259,7 @@ static const double CANCELS = 1e-3;
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
 // the integrals of (v + V' tau)^2, of 2 (v + V' tau) V_1 cos and of V_1^2 cos^2.
 double fc_drive_square(const FcDrive* drive, double t0, double t1) {
+    assert(!(t1 < t0));
     const double duration = t1 - t0;
     const double middle = 0.5 * (t0 + t1);
     const double v = linear(drive->V, middle);
@@ -284,6 +289,7 @@ static double least_ahead(double angle) { return SAME_ANGLE * (1.0 + fabs(angle)
 
 // The distance from now, more than `least`, to the next angle that equals target modulo 2 pi.
 static double angle_ahead(double now, double target, double least) {
+    assert(!(least < 0.0 || least > FC_TWO_PI));
     double ahead = fmod(target - now, FC_TWO_PI);
     if (ahead < 0.0) {
         ahead += FC_TWO_PI;
@@ -307,6 +313,7 @@ static const double AWAY_FROM_GRAZING = 0.9;
 
 // acos(-V / V_1), which loses half of its digits next to 1 and -1.
 static double angle_of_reversal(double V, double V_1) {
+    assert(fabs(V) < fabs(V_1));
     return fabs(V) < AWAY_FROM_GRAZING * fabs(V_1) ? acos(-V / V_1) : 2.0 * atan(sqrt((V_1 + V) / (V_1 - V)));
 }
 
@@ -375,6 +382,8 @@ FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
         const double root = -drive->V.value / drive->V.rate;
         return root > t && root < end ? (FcDriveEvent){root, true} : (FcDriveEvent){end, false};
     }
-    return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
-                                : first_of_linear_vibration(drive, t, end);
+    const FcDriveEvent event = drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
+                                                    : first_of_linear_vibration(drive, t, end);
+    assert(!(event.time < t || event.time > end));
+    return event;
 }

@@ -10,6 +10,7 @@
 #ifndef FC_MODEL_DRIVE_H
 #define FC_MODEL_DRIVE_H
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -92,6 +93,7 @@ double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of
 // The time [s] in which a quantity with this rate and curvature, neither negative, moves by change: the root
 // of rate x + curvature x^2 / 2 = change; infinite if it does not move.
 static inline double fc_time_to_move(double rate, double curvature, double change) {
+    assert(!(rate < 0.0 || curvature < 0.0 || change < 0.0));
     if (rate == 0.0 && curvature == 0.0) {
         return INFINITY;
     }

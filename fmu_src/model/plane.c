@@ -1,5 +1,6 @@
 #include "model/plane.h"
 
+#include <assert.h>
 #include <math.h>
 
 void fc_plane_make(FcPlane* plane, const FcScene* scene) {
@@ -10,6 +11,7 @@ void fc_plane_make(FcPlane* plane, const FcScene* scene) {
         plane->static_friction.model = FC_ELASTIC_PLASTIC;
     }
     const double ratio = fc_static_ratio(scene->friction);
+    assert(!(ratio < 1.0));
     plane->static_friction.mu *= ratio;
     plane->static_friction.staticRatio = 1.0;
     plane->of_static_limit = *scene;
@@ -57,6 +59,7 @@ FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at,
         fc_has_broken_away(plane->scene->friction, state) ? log_curve_rate(plane, at, t, at_t) : 0.0;
     const double limit = limit_of_bound(plane, at, state);
     const double D = limit / at->sigma;
+    assert(!(D < 0.0));
     return (FcPlaneBound){limit, D, D * (rates.ratio + by_curve), rates.sigma};
 }
 

@@ -14,6 +14,7 @@ enum { MAX_ROOT_STEPS = 200 };
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double* evaluations) {
     assert(a <= b && close >= 0.0);
+    assert(!(at_a * at_b > 0.0)); // of no number passes
     const double rounding = DBL_EPSILON * fc_max(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;
@@ -55,5 +56,7 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
                        (at_far / (at_before - at_far));
         }
     }
-    return (at_near < 0.0) == ends_negative || at_near == 0.0 ? near : far;
+    const double root = (at_near < 0.0) == ends_negative || at_near == 0.0 ? near : far;
+    assert(root >= a && root <= b);
+    return root;
 }

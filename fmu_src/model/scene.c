@@ -40,6 +40,7 @@ static double open_separation(const FcContactAtModulus* at_E) {
 void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcContactAtModulus* at_E,
                    const FcFriction* friction, double F_C) {
     FcDrive* drive = &scene->drive;
+    assert(!(F_C < 0.0 || drive->vibration.a_d < 0.0));
     scene->contact = contact;
     scene->friction = friction;
     scene->F_C = F_C;
@@ -47,6 +48,7 @@ void fc_scene_make(FcScene* scene, const FcContactParameters* contact, const FcC
     const bool by_load = contact->input == FC_CONTACT_LOAD;
     const bool swells = drive->vibration.a_d != 0.0 && (by_load || fc_limit_follows_load(friction));
     scene->log_swell = swells ? fc_contact_log_swell(at_E, drive->vibration.a_d) : 0.0;
+    assert(!(scene->log_swell < 0.0));
     scene->floats = by_load && (drive->load.rate != 0.0 || drive->E.rate != 0.0);
     if (!by_load) {
         drive->load.rate = 0.0;
@@ -82,6 +84,7 @@ static FcContactAtModulus contact_at(const FcScene* scene, double t) {
 // a modulus that moves tenfold moves it by a hundredth.
 static double time_to_edge(const FcScene* scene, double rest) {
     const FcLinearInput d = scene->drive.d;
+    assert(d.rate != 0.0);
     const int most = scene->drive.E.rate == 0.0 ? 1 : 8;
     double time = 0.0;
     for (int i = 0; i < most; i++) {
@@ -92,6 +95,7 @@ static double time_to_edge(const FcScene* scene, double rest) {
 }
 
 double fc_scene_segment(FcScene* scene, double rest, double whole) {
+    assert(rest >= 0.0 && rest <= whole);
     const FcDrive* drive = &scene->drive;
     const bool by_load = follows_load(scene);
     const double rate = by_load ? drive->load.rate : drive->d.rate;
@@ -119,6 +123,7 @@ double fc_scene_segment(FcScene* scene, double rest, double whole) {
 }
 
 FcScene fc_scene_later(const FcScene* scene, double t) {
+    assert(!(t < 0.0));
     FcScene later = {.drive = fc_drive_later(&scene->drive, t)};
     const double E = later.drive.E.value;
     const FcContactAtModulus at_E =
@@ -179,6 +184,7 @@ FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
 static FcCoefficients coefficients(const FcScene* scene, const FcContactResponse* response, double V) {
     const double limit =
         fc_limit_follows_load(scene->friction) ? scene->friction->mu * response->F_n : scene->F_C;
+    assert(!(response->sigma < 0.0 || limit < 0.0));
     return (FcCoefficients){
         .V = V, .sigma = response->sigma, .limit = limit * fc_stribeck(scene->friction, V)};
 }
@@ -255,11 +261,13 @@ static double largest_d(const FcScene* scene, double h) {
 }
 
 double fc_scene_largest_stiffness(const FcScene* scene, double h) {
+    assert(!(scene->drive.E.value <= 0.0));
     const FcContactAtModulus stiffest = contact_at(scene, scene->drive.E.rate > 0.0 ? h : 0.0);
     return fc_contact_stiffness(&stiffest, fc_scene_smallest_d(scene, h));
 }
 
 double fc_scene_smallest_limit(const FcScene* scene, double h) {
+    assert(h >= 0.0);
     if (!fc_limit_follows_load(scene->friction)) {
         return scene->F_C;
     }
@@ -269,6 +277,7 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
 }
 
 double fc_scene_smallest_saturation(const FcScene* scene, double h) {
+    assert(h >= 0.0);
     if (fc_scene_ratio_is_constant(scene)) {
         const FcContactAtModulus end = contact_at(scene, h);
         return scene->friction->mu *
@@ -280,6 +289,7 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
 // g / sigma is largest at an end of E and of the load, with the surfaces farthest apart or, with a constant
 // stiffness, nearest.
 double fc_scene_largest_saturation(const FcScene* scene, double h) {
+    assert(h >= 0.0);
     const FcFriction* friction = scene->friction;
     if (!fc_scene_depends_on_d(scene)) {
         return scene->F_C / scene->at_E.stiffness_0 * fc_static_ratio(friction);

@@ -60,5 +60,6 @@ double fc_bessel_ratio(double x) {
     for (double k = floor(20.0 + 8.0 * sqrt(x)); k >= 1.0; k -= 1.0) {
         ratio = x / (2.0 * k + x * ratio);
     }
+    assert(!(ratio < 0.0 || ratio > 1.0));
     return ratio;
 }

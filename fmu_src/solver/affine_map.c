@@ -5,6 +5,7 @@
 
 // relaxation is 1 - P. Composing it instead of P keeps its digits if hardly anything relaxes.
 void fc_map_append(FcMap* map, const FcMap* next) {
+    assert(fc_map_contracts(map) && fc_map_contracts(next));
     const double kept = 1.0 - map->relaxation;
     const double offset = map->offset;
     map->relaxation += kept * next->relaxation;
@@ -33,6 +34,7 @@ FcMap fc_map_power(const FcMap* one, double n) {
         fc_map_append(&square, &half);
         n = floor(0.5 * n);
     }
+    assert(fc_map_contracts(&power));
     return power;
 }
 
@@ -46,6 +48,7 @@ FcMap fc_map_of_one_start(const FcStepResult* result) {
 }
 
 void fc_map_apply(const FcMap* map, FcStepResult* result) {
+    assert(fc_map_contracts(map));
     const double delta_0 = result->delta;
     result->delta = delta_0 - map->relaxation * delta_0 + map->offset; // digits of a small change
     result->impulse += map->impulse_slope * delta_0 + map->impulse_offset;

@@ -6,6 +6,8 @@
 #ifndef FC_SOLVER_AFFINE_MAP_H
 #define FC_SOLVER_AFFINE_MAP_H
 
+#include <math.h>
+
 #include "solver/solver.h"
 
 typedef struct {
@@ -21,6 +23,10 @@ typedef struct {
     double heat_slope;     // N                = heat_square delta_0^2 + heat_slope delta_0 + heat_offset
     double heat_offset;    // J
 } FcMap;
+
+// Whether the map leads no two starts farther apart, but for rounding. Any does: the equation contracts, and so does a Radau
+// method, which is algebraically stable.
+static inline bool fc_map_contracts(const FcMap* map) { return !(fabs(1.0 - map->relaxation) > 1.0 + 1e-12); }
 
 void fc_map_append(FcMap* map, const FcMap* next); // the map, then the next one
 FcMap fc_map_power(const FcMap* one, double n);    // n a non-negative whole number

@@ -9,6 +9,7 @@
 void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
                       FcStepResult* result) {
     assert(h >= 0.0 && fc_drive_is_constant(&scene->drive));
+    assert(!fc_scene_is_separated(scene));
     FcCoefficients at = fc_scene_coefficients_of(scene, contact);
     if (!fc_is_planar(scene, from)) {
         const FcMap map = fc_map_of_constant_scene(&at, h);
@@ -38,7 +39,7 @@ void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, do
 }
 
 FcBristle fc_steady_sliding(const FcScene* scene, FcBristle from, FcVector* force) {
-    assert(fc_drive_is_constant(&scene->drive));
+    assert(fc_drive_is_constant(&scene->drive) && !fc_scene_is_separated(scene));
     FcPlane plane;
     fc_plane_make(&plane, scene);
     const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));

@@ -89,6 +89,7 @@ static bool has_body(const FcCvode* solver) { return solver->states > POSITION; 
 // The impulse [N s] of F_t since the start of the step, at the time t [s].
 static double impulse_of(const FcCvode* solver, double t, double delta, double impulse, double position) {
     const FcBody* body = &solver->body;
+    assert(has_body(solver) && body->m > 0.0);
     double of = impulse - solver->impulse_0 + solver->damped->sigma_1 * (delta - solver->delta_0);
     if (solver->damped->sigma_2 != 0.0) {
         of += solver->damped->sigma_2 * (fc_drive_displacement(&solver->scene.drive, 0.0, t) + body->v * t +
@@ -170,6 +171,7 @@ static int right_hand_side(realtype tau, N_Vector y, N_Vector rates, void* user)
 static void jacobian_of_body(const FcCvode* solver, const FcScene* now, N_Vector y, SUNMatrix J) {
     const FcFriction* damped = solver->damped;
     const double m = solver->body.m;
+    assert(has_body(solver) && m > 0.0);
     const double w = fc_drive_V(&now->drive, 0.0);
     const FcBristle bristle = bristle_of(solver, y);
     const double delta_rate = fc_motion(now, bristle).rates.delta;
@@ -287,6 +289,7 @@ static double periods_of(const FcDrive* drive, double h) {
 // up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma. With a mass those of
 // ringing without vibration, and of energies, which are never forgotten, add up as those of chance do.
 static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h) {
+    assert(h >= 0.0 && options->tolerance > 0.0 && options->force >= 0.0);
     const double stiffness = fc_scene_largest_stiffness(scene, h);
     const double vibrations = periods_of(&scene->drive, h);
     const double ring = has_body(solver) ? sqrt(solver->body.m / stiffness) : INFINITY; // s, of an angle of 1
@@ -332,6 +335,7 @@ static double stribeck_step(const FcCvode* solver, double tau) {
         rate += solver->acceleration;
     }
     const double change = fc_max(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
+    assert(change > 0.0);
     return rate > 0.0 ? change / rate : INFINITY;
 }
 
@@ -421,6 +425,7 @@ static bool integrate(FcCvode* solver, const FcScene* scene, const FcSolverOptio
     for (*t = 0.0; *t < h;) {
         begin_state(solver, *t, &now);
         const double stop = has_body(solver) ? h : fc_drive_next_event(&scene->drive, *t, h).time;
+        assert(stop >= *t && stop <= h);
         const double taken = integrate_state(solver, stop - *t);
         if (!isfinite(taken)) {
             return false;

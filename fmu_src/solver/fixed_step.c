@@ -76,6 +76,7 @@ static void rk4(FcStepResult* y, double h, const FcCoefficients* start, const Fc
 
 // The largest sigma |V| / g over [0, h] [1/s], sampled.
 static double largest_rate(const FcScene* scene, double h) {
+    assert(h > 0.0);
     const FcDrive* drive = &scene->drive;
     const bool vibrates = fc_drive_vibrates(drive);
     const double f = vibrates ? drive->vibration.f : 0.0;
@@ -92,6 +93,7 @@ static double largest_rate(const FcScene* scene, double h) {
 // Refuses an explicit method beyond its limit, whose numbers would grow without bound.
 static bool check_stability(const FcScene* scene, const char* method, double limit, double step_size,
                             double step, double h, FcMessage* message) {
+    assert(limit > 0.0 && step > 0.0 && step <= h);
     const double bound = fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_saturation(scene, h);
     if (bound * step <= limit) {
         return true;
@@ -112,6 +114,7 @@ static bool check_stability(const FcScene* scene, const char* method, double lim
 static void take_step(FcMethod method, const FcScene* scene, FcStepResult* y, double t, double t_next,
                       FcCoefficients* start) {
     const double h = t_next - t;
+    assert(h >= 0.0 && method != FC_METHOD_COLLOCATION && method != FC_METHOD_CVODE);
     if (method == FC_METHOD_EXPLICIT_EULER) {
         const FcCoefficients at = fc_scene_coefficients(scene, t);
         explicit_euler(y, h, &at);
@@ -133,6 +136,7 @@ static void take_step(FcMethod method, const FcScene* scene, FcStepResult* y, do
 static double steps_in(double h, double size) { return fc_max(1.0, ceil(h / size - STEP_ROUNDING)); }
 
 bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message) {
+    assert(size > 0.0 && h >= 0.0);
     const double steps = steps_in(h, size);
     const double most = FC_MAX_EVALUATIONS / (fc_is_bounded(scene->friction) ? OF_A_BOUNDED_STEP : OF_A_STEP);
     return steps <= most ||
@@ -152,6 +156,7 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
     const double size = options->step_size;
     const double steps = steps_in(h, size);
     const double step = h / steps;
+    assert(step <= (1.0 + 2.0 * STEP_ROUNDING) * size);
     if ((method == FC_METHOD_EXPLICIT_EULER &&
          !check_stability(scene, "explicitEuler", EXPLICIT_EULER_LIMIT, size, step, h, message)) ||
         (method == FC_METHOD_RK4 && !check_stability(scene, "rk4", RK4_LIMIT, size, step, h, message))) {

@@ -38,6 +38,7 @@ FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolve
     const double stiffness = fc_scene_largest_stiffness(scene, duration);
     // An error of the deflection becomes one of the force, which grows with sigma up to the step's end.
     const double grows = options->stiffness_at_end > stiffness ? options->stiffness_at_end / stiffness : 1.0;
+    assert(!(stiffness < 0.0 || grows < 1.0));
     return (FcInterval){.scene = scene,
                         .duration = duration,
                         .tolerance = options->tolerance,

@@ -9,6 +9,7 @@
 // By cvode or a fixed step, segment by segment.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                        double h, FcStepResult* result, FcMessage* message) {
+    assert(method != FC_METHOD_COLLOCATION && (method != FC_METHOD_CVODE || cvode));
     if (method != FC_METHOD_CVODE && !fc_check_fixed_steps(scene, options->step_size, h, message)) {
         return false;
     }
@@ -35,7 +36,7 @@ static bool takes_default(const FcScene* scene, FcMethod method) {
 
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result) {
-    assert(fc_drive_is_constant(&scene->drive));
+    assert(h >= 0.0 && fc_drive_is_constant(&scene->drive));
     if (!fc_may_relax(scene->friction) || fc_scene_is_separated(scene) || !takes_default(scene, method)) {
         return false;
     }
@@ -71,7 +72,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
                             FcVector* force, double* evaluations, bool* scatters) {
     *force = (FcVector){0.0, 0.0};
     *scatters = false;
-    assert(!fc_drive_is_linear(&scene->drive));
+    assert(!fc_drive_is_linear(&scene->drive) && options->tolerance > 0.0);
     if (fc_scene_is_separated(scene)) {
         return (FcBristle){0};
     }

@@ -76,6 +76,7 @@ void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* 
             const double damping = -side * sigma_1 * (of.first - end) * w;
             now->work += damping;
             now->heat += damping + fc_drop_heat(at.sigma, of.first, end);
+            assert(end >= 0.0 && end <= of.first);
             now->delta = side * end;
             now->state = FC_SLIPPING;
             return;
@@ -85,6 +86,7 @@ void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* 
 
 bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const char* reason,
                     FcMessage* message) {
+    assert(h >= 0.0 && body->m > 0.0);
     const double omega = sqrt(fc_scene_largest_stiffness(scene, h) / body->m);
     return fc_message_set(
         message,

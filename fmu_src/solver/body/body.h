@@ -8,6 +8,8 @@
 #ifndef FC_SOLVER_BODY_BODY_H
 #define FC_SOLVER_BODY_BODY_H
 
+#include <assert.h>
+
 #include "model/motion.h"
 #include "solver/method.h"
 
@@ -31,6 +33,7 @@ static inline double fc_body_pushed_twice(const FcBody* body, double t) {
 
 // Takes v and F to the end of a step of h [s], by the impulse of F_t [N s].
 static inline void fc_body_move(FcBody* body, double h, double impulse) {
+    assert(h >= 0.0 && body->m > 0.0);
     body->v += (fc_body_pushed(body, h) - impulse) / body->m;
     body->F.value += body->F.rate * h;
 }

@@ -64,6 +64,7 @@ static FcPlaneCoefficients coefficients(const March* march, FcPhase* phase) {
 }
 
 static void use_variable(March* march, double center, double length) {
+    assert(length > 0.0);
     march->part.in = (FcTimeMap){isfinite(length) ? center : 0.0, length};
 }
 
@@ -83,6 +84,7 @@ typedef struct {
 // The function whose rise above 0 is the event, at the points.
 static Close event_function(const March* march, Event event, const FcNodes* nodes, const FcBodyPanel* panel,
                             double f[POINTS]) {
+    assert(event != NO_EVENT);
     const FcFriction* friction = friction_of(march);
     const double tolerance = march->interval->tolerance;
     const double D = radius(nodes, LAST);
@@ -173,6 +175,7 @@ static Event first_event(const March* march, const FcNodes* nodes, const FcBodyP
         first = jump < *place ? JUMP : first;
         *place = fc_min(*place, jump);
     }
+    assert(*place >= 0.0);
     return *place <= 1.0 ? first : NO_EVENT;
 }
 
@@ -192,6 +195,7 @@ static double slope_at_end(const double f[POINTS]) {
 
 // The panel of a motion that is known.
 static void take_stuck(const March* march, FcNodes* nodes, FcBodyPanel* panel) {
+    assert(march->is_known && march->at.kind == FC_STICKS);
     for (int i = 0; i < POINTS; i++) {
         const double x = nodes->t[i] - nodes->t[START];
         double integral;
@@ -252,6 +256,7 @@ static double error_ratio_of(const March* march, const FcNodes* nodes, const FcB
         of_end += interval->stiffness * e_delta / (1.0 + nodes->tau[LAST] * r) + omega * e_v;
         life = fc_min(H, 3.0 / (r + 1.0 / H));
     }
+    assert(!(of_end < 0.0 || e_v < 0.0 || life < 0.0));
     const double share = fc_min(1.0, fc_max(1e-3, nodes->duration / life));
     const double share_of_mean = fc_min(1.0, fc_max(1e-3, nodes->duration / H));
     const double motion = fc_max(of_end / share, e_v / (H * share_of_mean));
@@ -265,6 +270,7 @@ static double error_ratio_of(const March* march, const FcNodes* nodes, const FcB
 static double planned(const March* march) {
     const FcDrive* drive = &march->plane->scene->drive;
     const FcKind kind = march->at.kind;
+    assert(march->t <= march->part.end && kind != FC_NO_BRISTLE);
     const double ringing = sqrt(march->interval->stiffness / march->body->m);
     double h = fc_min(march->part.end - march->t, MAX_PHASE * fc_smooth_time(&march->interval->pace));
     if (march->h > 0.0) {
@@ -503,6 +509,7 @@ static void pass(March* march, Event event, const FcNodes* nodes, const FcBodyPa
 // shorter than a panel.
 static bool take_free_time(March* march) {
     const FcBodyStuck* stuck = &march->stuck;
+    assert(march->is_known && march->t <= march->part.end);
     FcPhase phase;
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double rest = march->part.end - march->t;
@@ -593,6 +600,7 @@ static bool march_part(March* march, double end) {
 
 // Adds `times` the sums since before, of a whole number of periods of that length [s].
 static void repeat(March* march, const FcStepResult* before, double x_before, double times, double length) {
+    assert(times >= 0.0 && length > 0.0);
     FcStepResult* sums = &march->sums;
     sums->impulse += times * (sums->impulse - before->impulse);
     sums->work += times * (sums->work - before->work);
@@ -632,6 +640,7 @@ static bool march_periods(March* march, double h) {
 // The largest |w| of the step, at the most [m/s].
 static double largest_speed(const FcInterval* interval, const FcBody* body) {
     const double H = interval->duration;
+    assert(H > 0.0 && body->m > 0.0);
     const double F = fabs(body->F.value) + fabs(body->F.rate) * H;
     return fabs(body->v) + interval->speed + (F + interval->force) * H / body->m + DBL_MIN;
 }

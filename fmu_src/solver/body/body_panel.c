@@ -32,6 +32,7 @@ static Limit bound_at(const FcPlane* plane, double static_limit, double w) {
 
 // The integral of the force on the mass from the panel's start to a stage [N s].
 static double pushed(const FcBody* body, const FcNodes* nodes, int i) {
+    assert(i >= 0 && i < STAGES);
     const double t = nodes->t[START];
     const double x = nodes->t[i] - t;
     return x * (body->F.value + body->F.rate * (t + 0.5 * x));
@@ -45,6 +46,7 @@ typedef struct {
 
 // v (1 + sigma_2 A tau / m) = v: by three columns at once.
 static void add_viscous_friction(const FcNodes* nodes, double per_mass, Velocity* of) {
+    assert(per_mass >= 0.0);
     for (int first = 0; first <= STAGES; first += 3) {
         FcSystem row;
         double z[STAGES];
@@ -109,6 +111,7 @@ static void guess_velocities(const FcPlane* plane, const FcBody* body, const FcB
 FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
                                 double close, const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     const bool relaxes = start->kind == FC_RELAXES;
+    assert(start->kind != FC_SLIPS && (start->side != 0) == relaxes);
     Velocity velocity;
     find_velocity(plane, body, start, nodes, &velocity);
     double FC_PAIRED e[POINTS] = {0.0};
@@ -180,6 +183,7 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
                       const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     const FcFriction* friction = plane->scene->friction;
     const double m = body->m;
+    assert(start->side == 1 || start->side == -1);
     const bool is_linear = !fc_may_stick(friction) || !fc_has_static_friction(friction);
     for (int i = 0; i < STAGES; i++) {
         panel->v[i] = start->v;

@@ -55,6 +55,7 @@ typedef struct {
 } Panel;
 
 static double limit_at(const Rigid* of, double t) {
+    assert(t >= 0.0);
     return of->is_separated ? 0.0 : fc_scene_coefficients(of->scene, t).limit;
 }
 
@@ -144,6 +145,7 @@ static double first_fall(double* points, bool* rose) {
             f[k] += FC_RADAU.sample[i][k - 1] * points[i];
         }
     }
+    assert(isfinite(f[0]));
     *rose = f[0] > 0.0 || f[1] > 0.0;
     double evaluations = 0.0;
     for (int k = 1; k <= FC_SAMPLES; k++) {
@@ -192,6 +194,7 @@ static double take_accurate(const Rigid* of, double* length, Panel* panel, doubl
 // Shortens the panel to its end of a slip: the part, and then Newton's method for w = 0.
 static void end_slip(const Rigid* of, double part, Panel* panel, double* evaluations) {
     const double most = panel->h;
+    assert(part >= 0.0 && part <= 1.0 && of->side != 0);
     double length = part * most;
     double change = INFINITY;
     while (length > 0.0 && length <= most && fabs(change) > DBL_EPSILON * (of->t + length)) {
@@ -260,6 +263,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
             end_slip(&of, part, &panel, &result->evaluations);
         }
         const double end = panel.h < rest ? of.t + panel.h : h;
+        assert(end >= of.t && end <= h);
         if (of.sticks) {
             impulse += fc_body_pushed(body, end) - fc_body_pushed(body, of.t) +
                        body->m * change_of_V(&scene->drive, of.t, end);
@@ -283,6 +287,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
         }
         of.v = body->v + (fc_body_pushed(body, of.t) - impulse) / body->m;
     }
+    assert(of.t == h);
     result->impulse += impulse;
     body->x += moved;
     fc_body_move(body, h, impulse);

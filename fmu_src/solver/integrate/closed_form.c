@@ -1,5 +1,6 @@
 #include "solver/integrate/closed_form.h"
 
+#include <assert.h>
 #include <float.h>
 
 #include "model/extremes.h"
@@ -11,6 +12,7 @@
 static void take_coulomb(FcIntegrator* integrator) {
     const double t = integrator->at.t;
     const double end = integrator->part.end;
+    assert(end >= t && integrator->part.side * integrator->part.side <= 1);
     const double force = integrator->part.side * fc_coefficients_at(integrator, end).limit;
     const double work = force * fc_drive_displacement(&integrator->interval->scene->drive, t, end);
     const FcMap map = {.impulse_offset = force * (end - t), .work_offset = work, .heat_offset = work};
@@ -36,6 +38,7 @@ static bool slips_surely(FcIntegrator* integrator) {
     const FcPlaneCoefficients at = fc_coefficients_at(integrator, end);
     const double force = side * at.static_limit;
     const double delta = force / at.sigma;
+    assert(side * delta >= 0.0);
     const double work = force * fc_drive_displacement(&interval->scene->drive, t, end);
     const FcMap map = {.relaxation = 1.0,
                        .offset = delta,
@@ -68,6 +71,7 @@ static bool meets_in_part(FcIntegrator* integrator, double* end, double* path) {
     const FcPlaneCoefficients at = fc_coefficients_at(integrator, t);
     const double D = at.static_limit / at.sigma;
     const double moves = side * fc_drive_displacement(drive, t, *end);
+    assert(*end >= t && !(D < 0.0));
     *path = fc_max(0.0, D - side * integrator->along.offset);
     if (!(integrator->bristle.is_bounded && moves > *path)) {
         return false;
@@ -95,6 +99,7 @@ static void stick_to_meeting(FcIntegrator* integrator) {
     double end = integrator->part.end;
     double path;
     const bool meets = meets_in_part(integrator, &end, &path);
+    assert(end >= t && end <= integrator->part.end && path >= 0.0);
     const double x = meets ? integrator->part.side * path : fc_drive_displacement(drive, t, end);
     const FcMap map = {.offset = x,
                        .impulse_slope = sigma * (end - t),
@@ -120,6 +125,7 @@ static bool relax_along_path(FcIntegrator* integrator) {
     const double end = integrator->part.end;
     const double sigma = integrator->interval->stiffness;
     const double D = 1.0 / integrator->at.per_path;
+    assert(end >= t && !(D < 0.0));
     const double X = fc_drive_displacement(drive, t, end);
     if (fc_drive_vibrates(drive) || fabs(X) > SHORT_PATH * D) {
         return false;

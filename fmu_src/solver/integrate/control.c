@@ -40,6 +40,7 @@ static inline double sinh_of_small(double x) {
 
 // The longest panel in u for a function entire in t, to that part of its size: the strip of sinh(u) is pi / 2.
 static double longest_for(double part) {
+    assert(part > 0.0);
     return FC_PI / sinh_of_small(fc_max(0.01, -rough_log(part)) / ORDER);
 }
 
@@ -59,6 +60,7 @@ void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval
 
 // The panel whose length in u, times dt/du where that is largest, is the time `span` [s].
 static double length_of_span(const FcTimeMap* in, double x, double span) {
+    assert(!(span < 0.0));
     const double y = span / sqrt(in->length * in->length + x * x);
     if (x < 0.0 || y < 1e-3) {
         return y;
@@ -75,6 +77,7 @@ static bool is_relaxing(const FcControl* control, FcKind kind) {
 // The lag of the force behind sigma and g, over the force, if the bristle relaxes at that rate: their rate, times the time
 // of relaxation or of the layer.
 static double lag_for(const FcControl* control, const FcTimeMap* in, double rate) {
+    assert(!(rate < 0.0) && in->length > 0.0);
     const double pace = control->interval->pace.log_sigma;
     const double relaxation = rate > 1.0 / DBL_MAX ? 1.0 / rate : INFINITY; // s
     return pace > 0.0 ? pace * fc_min(relaxation, in->length) : 0.0;
@@ -116,6 +119,7 @@ static double graded_length(const FcControl* control, const FcPart* part, const 
     const FcInterval* interval = control->interval;
     const FcTimeMap* in = &part->in;
     const double x = at->t - in->center;
+    assert(h > 0.0 && isfinite(in->length));
     h = fc_min(h, length_of_span(in, x, span));
     h = fc_min(h, fc_min(FC_MAX_LENGTH_U, longest));
     // The end of the panel, and |V| there at the most.
@@ -163,7 +167,9 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcP
                       : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
                                         : 0.5 * rough_log(1.0 + grows));
     }
-    return h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
+    const double length = h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
+    assert(length >= 0.0 && length <= left);
+    return length;
 }
 
 double fc_control_error_ratio(const FcControl* control, const FcPart* part, const FcNodes* nodes,
@@ -171,6 +177,7 @@ double fc_control_error_ratio(const FcControl* control, const FcPart* part, cons
     const FcInterval* interval = control->interval;
     const double end = nodes->t[FC_STAGES - 1];
     const double allowed = fc_allowed_force(interval);
+    assert(!(panel->end_error < 0.0 || panel->mean_error < 0.0 || nodes->duration < 0.0));
     // An error of the end lives while the bristle does not forget it, and grows with sigma.
     const double length = part->in.length;
     const double forgets =
@@ -193,9 +200,11 @@ double fc_control_error_ratio(const FcControl* control, const FcPart* part, cons
 }
 
 double fc_control_reduction(double error_ratio) {
+    assert(!(error_ratio < 0.0));
     return isfinite(error_ratio) ? fc_max(0.3, fc_min(0.9, 0.9 * pow(error_ratio, -1.0 / ORDER))) : 0.4;
 }
 
 double fc_control_growth(double error_ratio) {
+    assert(!(error_ratio < 0.0));
     return error_ratio > 0.0 ? fc_min(2.0, 0.9 * pow(error_ratio, -1.0 / ORDER)) : 2.0;
 }

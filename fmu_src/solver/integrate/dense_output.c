@@ -27,6 +27,7 @@ static double value_at(void* points, double x) {
 
 // The root between a place at which f is not positive, unless by rounding, and one at which it is.
 static double root_between(double* f, double a, double b, double at_b) {
+    assert(a >= 0.0 && a < b && b <= 1.0 && at_b > 0.0);
     const double at_a = a == 0.0 ? f[START] : value_at(f, a);
     double none = 0.0;
     return at_a < 0.0 ? fc_root_between(value_at, f, a, at_a, b, at_b, 0.0, &none) : a + 0x1p-50 * (b - a);

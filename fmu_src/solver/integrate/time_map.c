@@ -13,14 +13,17 @@ double fc_time_map_t(const FcTimeMap* in, double u) {
 }
 
 double fc_time_map_dt_du(const FcTimeMap* in, double u) {
+    assert(in->length > 0.0);
     return isinf(in->length) ? 1.0 : in->length * cosh(u);
 }
 
 double fc_part_time(const FcPart* part, double u) {
+    assert(part->start <= part->end);
     return fc_min(fc_max(fc_time_map_t(&part->in, u), part->start), part->end);
 }
 
 double fc_time_map_u(const FcTimeMap* in, double t) {
+    assert(in->length > 0.0);
     const double x = t - in->center;
     return isinf(in->length) ? x : asinh(x / in->length);
 }
@@ -77,6 +80,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
 
 // The times [s] of the minima of |V| in and beside [0, h].
 static int minima(const FcDrive* of, double h, double times[MAX_CENTERS]) {
+    assert(h > 0.0);
     FcDrive drive = *of;
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
@@ -103,6 +107,7 @@ static int minima(const FcDrive* of, double h, double times[MAX_CENTERS]) {
         count += has_least(&drive, a, b, &times[count]);
         a = b;
     }
+    assert(count <= MAX_CENTERS);
     return count;
 }
 
@@ -132,6 +137,7 @@ static FcSpeedBound speed_bound_at(const FcPlane* plane, double t) {
 
 // The root of a x^n = change; infinite if a is 0.
 static double time_of_power(double a, int n, double change) {
+    assert(n >= 1 && n <= 4 && !(change < 0.0));
     if (!(a > 0.0)) {
         return INFINITY;
     }
@@ -150,6 +156,7 @@ static double time_of_change(const FcSpeedBound* bound, double change) {
 
 // The order with which V passes a center, seen over x [s].
 static int order_at(const FcSpeedBound* bound, double x) {
+    assert(!(x < 0.0));
     const double by[] = {bound->of[1], bound->of[2] * x, bound->of[3] * x * x};
     return by[0] >= by[1] && by[0] >= by[2] ? 1 : by[1] >= by[2] ? 2 : 3;
 }
@@ -207,6 +214,7 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
         of.length = fc_max(of.length, least);
         of.beyond = fc_max(of.beyond, least);
     }
+    assert(of.length > 0.0 && of.length <= of.beyond && of.strip_ratio > 0.0 && of.strip_ratio <= 1.0);
     return of;
 }
 
@@ -232,6 +240,7 @@ static int line_centers(const FcPlane* plane, double h, double tolerance, Center
         if (!(event.time < horizon)) {
             break;
         }
+        assert(count == 0 || centers[count - 1].time <= event.time);
         centers[count++] = center_at(plane, event.time, event.time, event.reversal, h, tolerance);
         t = event.time;
     }
@@ -244,6 +253,7 @@ static int plane_centers(const FcPlane* plane, double h, double tolerance, Cente
     int count = 0;
     for (int i = 0; i < found; i++) {
         if (times[i] > -h && times[i] < 2.0 * h) {
+            assert(count == 0 || centers[count - 1].time <= times[i]);
             centers[count++] = center_at(plane, times[i], times[i], false, h, tolerance);
         }
     }
@@ -258,6 +268,7 @@ static const double ROUNDING = 1e-12;
 static const double SAME_TIME = 0x1p-46;
 
 static FcPart part_of(double start, double end, const Center* center, bool is_beyond, int side) {
+    assert(start < end && side >= -1 && side <= 1);
     const double length = is_beyond ? center->beyond : center->length;
     return (FcPart){.start = start,
                     .end = end,
@@ -305,6 +316,7 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MAX_PARTS], int count, 
                     : isinf(left.length) ? start
                                          : fc_min(fc_max(0.5 * (left.time + right.time), start), end);
     middle = middle - start < ROUNDING * h ? start : end - middle < ROUNDING * h ? end : middle;
+    assert(start <= middle && middle <= end);
     if (middle > start) {
         count = add_part(parts, count, start, middle, &left, side);
     }
@@ -325,6 +337,7 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
         const bool has_after = i < found;
         const double end = has_after ? fc_min(fc_max(centers[i].time, start), h) : h;
         if (end - start > (plane->is_one_dimensional ? SAME_TIME : ROUNDING) * h) {
+            assert(count == 0 || parts[count - 1].end == start); // parts tile the interval
             count = add_gap(plane, parts, count, start, end, h, i > 0 ? &centers[i - 1] : NULL,
                             has_after ? &centers[i] : NULL);
             start = end;
@@ -333,6 +346,6 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
     if (count > 0) {
         parts[count - 1].end = h; // of rounding, and of more centers than there is room for
     }
-    assert(count > 0 && count <= FC_MAX_PARTS);
+    assert(count > 0 && count <= FC_MAX_PARTS && parts[0].start == 0.0);
     return count;
 }

@@ -231,10 +231,12 @@ static void with_library(const FcPlane* plane, const FcPart* part, double u, dou
 }
 
 void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes) {
+    assert(part->start <= part->end);
     assert(h >= 0.0 && (plane->is_one_dimensional ? part->side * part->side <= 1 : part->side == 0));
     if (!with_series(plane, part, u, h, nodes)) {
         with_library(plane, part, u, h, nodes);
     }
+    assert(!(nodes->duration < 0.0 || nodes->t[START] < part->start || nodes->t[LAST] > part->end));
     nodes->side = part->side;
     for (int i = 0; i < POINTS && plane->is_one_dimensional; i++) {
         nodes->V_y[i] = nodes->moved_y[i] = 0.0;

@@ -2,6 +2,8 @@
 #ifndef FC_SOLVER_PANEL_PANEL_ERROR_H
 #define FC_SOLVER_PANEL_PANEL_ERROR_H
 
+#include <assert.h>
+
 #include "solver/integrate/tuning.h"
 #include "solver/panel/panel.h"
 #include "solver/panel/radau.h"
@@ -37,6 +39,7 @@ FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double he
 // end by the rate there, inside by the least rate of the panel.
 FC_INLINE void fc_set_errors(FcPanel* panel, double z_first, double z_last, double force, double unresolved,
                              double quadrature) {
+    assert(!(force < 0.0 || unresolved < 0.0 || quadrature < 0.0));
     const double whole = fc_max(0.0, panel->z);
     const double z_end = fc_max(0.0, fc_min(z_last, whole));
     const double z_least = fc_max(fc_min(z_end, z_first), fc_min(whole, sqrt(whole)));

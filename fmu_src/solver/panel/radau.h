@@ -3,6 +3,7 @@
 #ifndef FC_SOLVER_PANEL_RADAU_H
 #define FC_SOLVER_PANEL_RADAU_H
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -109,6 +110,7 @@ FC_INLINE FcTail fc_tail_of(const double* f, double at_start) {
 // x^6: the rest of an error that is orthogonal to the polynomials of degree 7, weighted with a function whose
 // Legendre coefficients fall by x. The exponent is three quarters of 8, since x is an estimate.
 FC_INLINE double fc_acting_part(double x) {
+    assert(!(x > 1.0));
     const double x_3 = x * x * x;
     return x_3 * x_3;
 }

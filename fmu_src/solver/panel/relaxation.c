@@ -250,4 +250,5 @@ void fc_relaxation_panel(const FcPlane* plane, const FcNodes* nodes, const FcPan
     } else {
         take(plane, nodes, from, true, true, panel);
     }
+    assert(fc_map_contracts(&panel->along) && !(panel->end_error < 0.0 || panel->mean_error < 0.0));
 }

@@ -146,6 +146,7 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStar
 
 // Coulomb's law slips always: its force is known at any time.
 void fc_coulomb_panel(const FcNodes* nodes, double speed, FcPanel* panel) {
+    assert(nodes->side >= -1 && nodes->side <= 1 && !(nodes->duration < 0.0));
     double F_x[POINTS];
     double F_y[POINTS];
     *panel = (FcPanel){.z = 1.0, .sigma = INFINITY, .limit = nodes->limit[LAST]};

@@ -1,5 +1,6 @@
 #include "solver/periods/multirevolution.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -20,6 +21,7 @@ static const double FEWEST_OF_SLIPS = 60.0;
 // One period, or the part [from, to] of it.
 static void take_part(const FcScene* scene, const FcSolverOptions* options, double k, double from, double to,
                       FcStepResult* total) {
+    assert(k >= 0.0 && from >= 0.0 && from <= to);
     FcScene part = fc_scene_later(scene, k / scene->drive.vibration.f);
     if (from > 0.0) {
         part = fc_scene_from(&part, from);
@@ -43,11 +45,13 @@ static double to_kink(const FcScene* scene, double k) {
             nearest = fc_min(nearest, floor(at - k));
         }
     }
+    assert(nearest >= 0.0);
     return nearest;
 }
 
 double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods,
                           FcStepResult* total) {
+    assert(periods >= 0.0 && periods == floor(periods) && fc_drive_vibrates(&scene->drive));
     const double period = 1.0 / scene->drive.vibration.f;
     const bool is_planar = fc_is_planar(scene, fc_bristle_of(total));
     const bool is_bounded = fc_march_may_meet(scene);
@@ -109,6 +113,7 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
             take_part(scene, options, k, 0.0, period, total);
             k += 1.0;
         }
+        assert(k <= periods);
     }
     return k;
 }

@@ -56,12 +56,14 @@ static double allowed(const Block* block) {
 }
 
 static FcScene scene_at(const Block* block, double k) {
+    assert(block->of->first + k >= 0.0);
     const FcScene later = fc_scene_later(block->of->scene, (block->of->first + k) * block->period);
     return block->of->phase > 0.0 ? fc_scene_from(&later, block->of->phase) : later;
 }
 
 // The bristle on the bound of that side at the start of a scene.
 static FcBristle on_bound(const FcScene* scene, int side) {
+    assert(side == 1 || side == -1);
     FcPlane plane;
     fc_plane_make(&plane, scene);
     return (FcBristle){.delta = side * fc_bound(&plane, FC_SLIPPING, 0.0).D, .state = FC_SLIPPING};
@@ -86,6 +88,7 @@ static FcStepResult take_period(const Block* block, const FcScene* scene, FcBris
 
 // The bristle `periods` after period k - periods of the block.
 static FcBristle warmed_up(const Block* block, double k, int periods) {
+    assert(periods >= 0);
     FcBristle bristle = block->start;
     for (int before = periods; before > 0; before--) {
         const FcScene scene = scene_at(block, k - before);
@@ -105,6 +108,7 @@ static double apart(FcBristle a, FcBristle b) { return hypot(a.delta - b.delta, 
 // differences fall like powers: all the later ones together must be within the share.
 static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
     const int most = block->of->warm_up;
+    assert(most >= 2);
     const FcBristle start = warmed_up(block, k, most);
     const FcBristle other = warmed_up(block, k, most - 1);
     const double last = apart(start, other);
@@ -193,6 +197,7 @@ static const int ANGLE[MAX_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9
 static double place_in(const Block* block, double k) { return 4.0 * k / (block->of->count - 1.0) - 2.0; }
 
 static double period_of_point(const Block* block, int j) {
+    assert(j >= 0 && j < MAX_POINTS);
     return (block->of->count - 1.0) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
 }
 
@@ -213,6 +218,7 @@ static double largest_error(int count, const Numbers* weight, const double* erro
 static Numbers map_at(const Block* block, double k) {
     Numbers map = {.of = {0.0}};
     const double place = place_in(block, k);
+    assert(block->points <= MAX_POINTS);
     for (int j = block->points - 1; j >= 0; j--) {
         for (int i = 0; i < block->numbers; i++) {
             map.of[i] = map.of[i] * (place - block->place[j]) + block->point[j].of[i];
@@ -250,6 +256,7 @@ static bool interpolate(Block* block) {
         for (int before = 0; before < j; before++) {
             product *= block->place[j] - block->place[before];
         }
+        assert(product != 0.0); // no two points are one
         for (int i = 0; i < block->numbers; i++) {
             block->point[j].of[i] = error.of[i] / product;
         }
@@ -268,6 +275,7 @@ static double periods_of_part(const Block* block) { return fc_max(1.0, floor(blo
 
 // The time between a and b at which the push turns. If d does not vibrate, that is nearly the reversal of V.
 static double turn_of(FcPushed push, double a, double b, double* evaluations) {
+    assert(a <= b);
     const double at_a = fc_push_at(&push, a);
     const double at_b = fc_push_at(&push, b);
     *evaluations += 2.0;
@@ -283,6 +291,7 @@ static double distance_less_way(const Block* block, double k) {
     const FcScene scene =
         scene_at(block, fc_min(k, block->of->count - 2.0)); // up to two periods are looked at
     const int side = block->of->side;
+    assert(side == 1 || side == -1);
     FcPlane plane;
     fc_plane_make(&plane, &scene);
     // The vibration opposes the slip most half a period after the start of the scene or later.
@@ -364,6 +373,7 @@ static Margins margins_of(const Block* block) {
         const FcScene scene = scene_at(block, fc_min(i * margins.stride, block->of->count - 1.0));
         FcPlane plane;
         fc_plane_make(&plane, &scene);
+        assert(i < 2 * MAX_PARTS + 2);
         margins.D[i] = fc_scene_smallest_saturation(&plane.of_static_limit, block->period);
     }
     return margins;
@@ -371,6 +381,7 @@ static Margins margins_of(const Block* block) {
 
 static double margin_at(const Block* block, const Margins* margins, double k, FcBristle start) {
     const int i = (int)(k / margins->stride);
+    assert(i >= 0 && i < 2 * MAX_PARTS + 1);
     const double length = fc_min(margins->stride, block->of->count - 1.0 - i * margins->stride);
     const double part = length > 0.0 ? (k - i * margins->stride) / length : 0.0;
     const double D = margins->D[i] + part * (margins->D[i + 1] - margins->D[i]);
@@ -438,6 +449,7 @@ static double least_margin(const Stuck* of, double k) {
 // Whether a bristle that sticks in the block would meet its bound in it: it is followed through the tightest period and
 // those beside it. It has no margin, by estimate, in these places.
 static bool meets_while_stuck(const Block* block, const Place* suspects, int places) {
+    assert(places > 0);
     Stuck of = {.block = block, .first = scene_at(block, 0.0)};
     fc_plane_make(&of.plane, &of.first);
     of.across = fc_drive_across(&of.first.drive);
@@ -501,6 +513,7 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
             least = at.margin <= least.margin ? at : least;
             if (fmod(k + 1.0, margins.stride) == 0.0 || k == of->count - 1.0) {
                 if (least.margin <= 0.0) {
+                    assert(places < 2 * MAX_PARTS + 1);
                     suspects[places++] = least;
                 }
                 least.margin = HUGE_VAL;

@@ -71,6 +71,7 @@ static FcMap free_map_of(PeriodicSearch* search) {
             search->free_map_across.offset = search->scene->drive.V_y.value * search->period;
         }
         search->has_free_map = true;
+        assert(fc_map_contracts(&search->free_map));
         search->largest_free_start[0] = search->largest_free_start[1] = INFINITY;
     }
     return search->free_map;
@@ -93,6 +94,7 @@ static double largest_free_start_of(PeriodicSearch* search, int side) {
     fc_march_step(drops ? &plane.of_static_limit : search->scene, search->options, search->period, &end);
     search->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
+    assert(kept > 0.0);
     const double margin = side * (end.delta - map->offset);
     *largest_free_start = side * fc_min(side * farthest, margin / kept);
     return *largest_free_start;
@@ -100,6 +102,7 @@ static double largest_free_start_of(PeriodicSearch* search, int side) {
 
 // Takes *total over n free periods.
 static void take_free(const PeriodicSearch* search, double n, FcStepResult* total) {
+    assert(n >= 0.0 && search->has_free_map);
     const FcMap map = fc_map_power(&search->free_map, n);
     fc_map_apply(&map, total);
     if (search->is_planar) {
@@ -110,6 +113,7 @@ static void take_free(const PeriodicSearch* search, double n, FcStepResult* tota
 
 // Takes *total to the limit of infinitely many free periods.
 static void settle(const PeriodicSearch* search, FcStepResult* total) {
+    assert(search->has_free_map);
     const FcMap* map = &search->free_map;
     const FcMap* across = &search->free_map_across;
     const double least = 1e-300 * fc_max(1.0, fc_max(fabs(map->offset), fabs(across->offset)));
@@ -127,6 +131,7 @@ static const double OF_A_POWER = 30.0;
 
 // Whether the period after n free ones meets the bound; n may be infinite.
 static bool meets_after(PeriodicSearch* search, double n) {
+    assert(n >= 0.0 && search->has_free_map && search->is_bounded);
     FcStepResult end = search->total;
     if (isinf(n)) {
         settle(search, &end);
@@ -149,6 +154,7 @@ static bool meets_after(PeriodicSearch* search, double n) {
 // free_periods by steps. The starts of free periods lie on a straight line, along which |delta| is convex at
 // each phase. So all periods up to a last one are free.
 static double free_periods_by_steps(PeriodicSearch* search, double left) {
+    assert(left > 0.0);
     const FcMap map = free_map_of(search);
     const double moved = hypot(map.offset - map.relaxation * search->total.delta,
                                search->free_map_across.offset - map.relaxation * search->total.delta_y);
@@ -179,12 +185,14 @@ static double free_periods_by_steps(PeriodicSearch* search, double left) {
             free = middle;
         }
     }
+    assert(free >= 0.0 && free <= more);
     return free * moved <= rounding ? 0.0 : fc_min(free, left); // it is at the largest_free_start
 }
 
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
 // (1 - P) in n of them, with the first shift s.
 static double free_periods(PeriodicSearch* search, double left) {
+    assert(left > 0.0);
     const FcMap map = free_map_of(search);
     if (search->is_planar || map.relaxation > MAX_FORGOTTEN) {
         return free_periods_by_steps(search, left);
@@ -272,6 +280,7 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
 // Whether the mean since the kept period differs from *mean, which it becomes.
 static bool still_drifts(const PeriodicSearch* search, FcVector* mean) {
     const double periods = search->done - search->anchor_period;
+    assert(periods > 0.0);
     const FcVector before = *mean;
     *mean = (FcVector){search->total.impulse / periods, search->total.impulse_y / periods};
     const double allowed = search->options->tolerance * search->options->force * search->period;
@@ -279,6 +288,7 @@ static bool still_drifts(const PeriodicSearch* search, FcVector* mean) {
 }
 
 static void search_repetition(PeriodicSearch* search, double periods) {
+    assert(search->is_bounded && search->done <= periods);
     FcStepResult* total = &search->total;
     search->anchor_period = -1.0;
     search->least.delta = INFINITY;
@@ -337,6 +347,7 @@ static void search_repetition(PeriodicSearch* search, double periods) {
         }
         take_free(search, n, total);
         search->done += n;
+        assert(search->done <= periods);
     }
 }
 
@@ -352,6 +363,7 @@ static PeriodicSearch search_from(const FcScene* scene, const FcSolverOptions* o
 
 static double step_over_equal_periods(const FcScene* scene, const FcSolverOptions* options, double periods,
                                       FcStepResult* total) {
+    assert(periods >= 1.0 && periods == floor(periods) && !fc_drive_is_linear(&scene->drive));
     PeriodicSearch search = search_from(scene, options, total);
     if (!search.is_bounded) {
         free_map_of(&search);
@@ -420,6 +432,7 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
             fc_march_segments(scene, options, rest, result);
         }
     }
+    assert(done >= 0.0 && done <= periods);
     if (result->evaluations > FC_MAX_EVALUATIONS) {
         return fc_message_set(
             message,
@@ -433,6 +446,7 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
 FcVector fc_periods_settled(const FcScene* scene, const FcSolverOptions* options, FcStepResult* end,
                             bool* scatters) {
     const double f = scene->drive.vibration.f;
+    assert(f > 0.0 && fc_drive_vibrates(&scene->drive) && !fc_drive_is_linear(&scene->drive));
     if (fc_scene_is_separated(scene)) {
         fc_open_contact_step(end);
         return (FcVector){0.0, 0.0};

@@ -65,6 +65,7 @@ void fc_project_result(const FcScene* scene, FcStepResult* result) {
 // its own.
 static FcSolverOptions options_of_segment(const FcSolverOptions* options, const FcSegments* segments) {
     FcSolverOptions own = *options;
+    assert(segments->h <= segments->whole);
     const double limit = segments->h < segments->whole && options->damping > 0.0
                              ? fc_scene_smallest_limit(segments->scene, segments->h)
                              : 0.0;
@@ -76,6 +77,7 @@ static FcSolverOptions options_of_segment(const FcSolverOptions* options, const 
 
 void fc_march_segments(const FcScene* scene, const FcSolverOptions* options, double duration,
                        FcStepResult* total) {
+    assert(duration >= 0.0 && options->tolerance > 0.0);
     FcSegments segments;
     fc_segments_start(&segments, scene, duration);
     while (total->evaluations <= FC_MAX_EVALUATIONS && fc_next_segment(&segments)) {
