@@ -5,7 +5,8 @@
 //     build/hunt/panels "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3"
 //
 // A line a panel: the times and the places in u of its ends, L of t = t_c + L sinh u (inf for t = u), z, the estimated
-// errors of its end and of its mean over the allowed force, how often it was made, and what it is:
+// errors of its end and of its mean over the allowed force, the error ratio by which the controller judges both (at most 1 of
+// an accepted panel), how often it was made, and what it is:
 //
 //     relaxes, sticks, slips, coulomb    the motion
 //     known                              a closed form, which has neither z nor errors
@@ -41,9 +42,9 @@ static void print_panel(const FcIntegrator* integrator, From from, const FcPanel
     const double made = (integrator->evaluations - evaluations) / FC_STAGES;
     evaluations = integrator->evaluations;
     if (lists) {
-        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %4.0f %s\n", from.t, integrator->at.t,
+        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %8.1e %4.0f %s\n", from.t, integrator->at.t,
                from.u, integrator->at.u, integrator->part.in.length, panel->z, panel->end_error / allowed,
-               panel->mean_error / allowed, made, from.kind);
+               panel->mean_error / allowed, isnan(panel->z) ? NAN : integrator->error_ratio, made, from.kind);
     }
 }
 
@@ -70,8 +71,8 @@ WRAP(void, fc_accept_closed_form, FcIntegrator* integrator, const FcMap* map, do
 WRAP(bool, fc_friction_contact_advance, FcFrictionContact* contact, double t, double h, FcMessage* message) {
     lists = true;
     evaluations = 0.0;
-    printf("step from %.17g s of %.17g s\n%15s %15s %13s %13s %10s %9s %8s %8s %4s kind\n", t, h, "t",
-           "t_end", "u", "u_end", "L", "z", "of_end", "of_mean", "made");
+    printf("step from %.17g s of %.17g s\n%15s %15s %13s %13s %10s %9s %8s %8s %8s %4s kind\n", t, h, "t",
+           "t_end", "u", "u_end", "L", "z", "of_end", "of_mean", "ratio", "made");
     const bool is_taken = __real_fc_friction_contact_advance(contact, t, h, message);
     lists = false;
     return is_taken;

@@ -291,7 +291,7 @@ FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, cons
     if (past->sigma == 0.0 || now.sigma == 0.0 || same) {
         const FcBristle reached = fc_project_onto_bound(scene, bristle);
         const double end = fc_size(reached);
-        // If nothing jumps, an error_ratio is the last step's, within its tolerance. An open contact has no stiffness, or a
+        // If nothing jumps, an excess is the last step's error, within its tolerance. An open contact has no stiffness, or a
         // constant one.
         if (end < delta && !same) {
             *heat = fc_drop_heat(fc_scene_contact(scene, 0.0).sigma, delta, end);

@@ -83,6 +83,6 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     fc_result_start(&end, from, *evaluations);
     *force = fc_periods_settled(scene, options, &end, scatters);
     *evaluations = end.evaluations;
-    // An error_ratio over a bound by rounding would become heat of the first step.
+    // An excess over a bound by rounding would become heat of the first step.
     return fc_project_onto_bound(scene, fc_bristle_of(&end));
 }

@@ -42,7 +42,7 @@ double fc_control_error_ratio(const FcControl* control, const FcPart* part, cons
                               const FcPanel* panel, double* of_end);
 
 // The factor by which a panel is shortened that was refused, and that by which the one after it may be longer if there
-// were refusals, for an error_ratio.
+// were refusals, for an error ratio above 1.
 double fc_control_reduction(double error_ratio);
 double fc_control_growth(double error_ratio);
 

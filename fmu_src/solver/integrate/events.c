@@ -61,7 +61,7 @@ bool fc_begin_slip(FcIntegrator* integrator, bool surely) {
     if (!surely && !(push > ROUNDING_OF_PUSH * fc_largest_push(integrator))) {
         return false;
     }
-    // The energy that it loses is heat, also that of its small error_ratio over the bound.
+    // The energy that it loses is heat, also that of its small excess over the bound.
     const double size = hypot(delta.x, delta.y);
     const double D = fc_plane_radius(plane, &at, FC_SLIPPING);
     integrator->sums.heat += fc_drop_heat(at.sigma, size, D);
@@ -107,7 +107,7 @@ static double close_to_bound(const FcIntegrator* integrator, double D) {
             fabs(integrator->at.u) * fc_time_map_dt_du(&integrator->part.in, integrator->at.u) +
             interval->duration;
         distance += 4e-16 * fc_largest_push(integrator) * of_time;
-    } else { // an error_ratio over the bound costs heat, whose tolerance goes with the path
+    } else { // an excess over the bound costs heat, whose tolerance goes with the path
         const double allowed =
             fc_min(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
             fc_min(1.0, interval->speed * interval->duration / D);

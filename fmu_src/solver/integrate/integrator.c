@@ -194,7 +194,8 @@ double fc_step_adaptive(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel
                                  integrator->end, integrator->h);
     for (int tries = 0;; tries++) {
         const bool is_solved = fc_make_panel(integrator, h, nodes, panel);
-        const double error_ratio = is_solved ? error_ratio_of(integrator, nodes, panel) : HUGE_VAL;
+        const double error_ratio = integrator->error_ratio =
+            is_solved ? error_ratio_of(integrator, nodes, panel) : HUGE_VAL;
         if ((is_solved && error_ratio <= 1.0) || tries >= FC_MAX_REJECTIONS) {
             if (!is_solved) {
                 integrator->along.offset = NAN;

@@ -38,6 +38,7 @@ typedef struct {
         double slip_time;     // s, into the interval, its middle
         int slip_side;
     } sums;
+    double error_ratio; // of the panel that the controller judged last, over what is allowed
     double evaluations;
 } FcIntegrator;
 
