@@ -1,4 +1,4 @@
-// The bound of a bristle and the transitions of its state:
+// The bound of a bristle and the state machine of its slip:
 //
 //     from          to            when
 //     free          slipping      it meets its static bound and is pushed; it drops to the kinetic one (fc_drop_heat)
@@ -36,7 +36,7 @@ void fc_at_bound(FcAtBound* of, const FcScene* scene, FcBristle bristle);
 // catches up onto its bound.
 #define FC_INSIDE_BOUND 1e-10
 
-// The state at the start of the scene: a bristle beyond its bound is moved onto it, a bristle without contact
+// The return mapping at the start of the scene: a bristle beyond its bound is moved onto it, a bristle without contact
 // becomes 0, and a slipping bristle that is not pushed sticks.
 FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle);
 

@@ -1,4 +1,4 @@
-// One entry to the methods: the choice of the method for a step, and the settled state of a scene.
+// The dispatch of the methods: the choice of the method for a step, and the settled state of a scene.
 #ifndef FC_SOLVER_METHOD_H
 #define FC_SOLVER_METHOD_H
 

@@ -1,4 +1,5 @@
-// The controller of the march: it plans the length of each panel, and judges its estimated errors.
+// The step size controller of the march: it plans the length of each panel, and judges its estimated errors by their error
+// ratio, above 1 of which the panel is rejected and made again, shorter.
 #ifndef FC_SOLVER_INTEGRATE_CONTROL_H
 #define FC_SOLVER_INTEGRATE_CONTROL_H
 

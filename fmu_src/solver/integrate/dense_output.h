@@ -1,4 +1,4 @@
-// The zero of a function that is known at the points of a panel.
+// The dense output of a panel, the polynomial through its points, and its first upcrossing of 0.
 #ifndef FC_SOLVER_INTEGRATE_DENSE_OUTPUT_H
 #define FC_SOLVER_INTEGRATE_DENSE_OUTPUT_H
 

@@ -1,4 +1,4 @@
-// The march: a bristle, or Coulomb's law, over an interval along a line or in the plane. It crosses the parts of the
+// The march: a bristle, or Coulomb's law, over an interval along a line or in the plane. It integrates over the parts of the
 // interval (time_map.h) panel by panel (panel.h), from event to event (events.h). A line is a plane in which nothing moves
 // transversely.
 #ifndef FC_SOLVER_INTEGRATE_MARCH_H

@@ -1,11 +1,11 @@
-// The course of V over an interval: its parts, and the variable u in which each is crossed.
+// The time map: the parts of an interval, and the graded change of variable t(u) in which each is crossed.
 //
 // |V| is least at its centers: reversals along a line, near-zeros in the plane, and minima that touch 0. Near a center
 // t_c, to the lowest order n,
 //
 //     |V|^2 = a^2 (x^2n + eps^2n),      x = t - t_c,      a = |d^n V/dt^n| / n!
 //
-// It has branch points at the distance eps from the real axis; at a reversal eps = 0. A bristle relaxes there over the
+// It has branch points at the distance eps from the real axis; at a reversal eps = 0. A bristle has its relaxation time there, the
 // layer, ((n + 1) g / (sigma a))^(1 / (n + 1)). With
 //
 //     t = t_c + L sinh(u)      along a line L = max(eps, layer), since V is analytic on either side;

@@ -1,4 +1,4 @@
-// Many vibration periods with moving inputs, at the cost of some.
+// The multirevolution step: many vibration periods with moving inputs, at the cost of some.
 //
 // Period k of a step begins with the inputs V + V' k T, d + d' k T, ... at the same phase. Its map is a smooth
 // function of k, which need not be whole. A block of periods is taken by interpolated maps (period_interpolation.h).

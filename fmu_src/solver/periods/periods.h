@@ -1,4 +1,4 @@
-// Many vibration periods at the cost of a few.
+// Many vibration periods at the cost of a few: the Poincare map of one period, its fixed point, and limit cycles.
 //
 // With held inputs every period of the vibration is the same map of the deflection, a clamped affine one if
 // the bristle has a bound:
