@@ -84,7 +84,7 @@ double fc_step_adaptive(FcIntegrator* integrator, FcNodes* nodes, FcPanel* panel
 void fc_accept_panel(FcIntegrator* integrator, const FcNodes* nodes, FcPanel* panel, double h);
 // The same of a closed form that ends at the time t [s].
 void fc_accept_closed_form(FcIntegrator* integrator, const FcMap* map, double t);
-// Notes a slip along a line, for a leap.
+// Notes a slip along a line, for a multirevolution step.
 void fc_note_slip(FcIntegrator* integrator, double start, double end, int side);
 
 #endif

@@ -5,8 +5,8 @@
 //
 //     |V|^2 = a^2 (x^2n + eps^2n),      x = t - t_c,      a = |d^n V/dt^n| / n!
 //
-// It has branch points at the distance eps from the real axis; at a reversal eps = 0. A bristle has its relaxation time there, the
-// layer, ((n + 1) g / (sigma a))^(1 / (n + 1)). With
+// It has branch points at the distance eps from the real axis; at a reversal eps = 0. Its relaxation time there is
+// the layer, ((n + 1) g / (sigma a))^(1 / (n + 1)). With
 //
 //     t = t_c + L sinh(u)      along a line L = max(eps, layer), since V is analytic on either side;
 //                              in the plane L = max(eps, sqrt(tolerance) layer), since V turns within eps
