@@ -136,7 +136,23 @@ FC_INLINE void of_separation(const FcScene* scene, double d_middle, const double
     }
 }
 
-// Everything by series about the middle. False if they would be too long, or an input moves otherwise than in V and d.
+// sin and cos - 1 of the vibration's angle at the times x, from that of the middle on: series of a halved angle, doubled back.
+FC_INLINE void turn(const double* x, double omega, Halvings angle, double* sine, double* cosine) {
+    const double pace = omega * angle.factor;
+    for (int i = 0; i < POINTS; i++) {
+        sine[i] = series_sin(pace * x[i]);
+        cosine[i] = series_cos_less_1(pace * x[i]);
+    }
+    for (int k = 0; k < angle.count; k++) {
+        for (int i = 0; i < POINTS; i++) {
+            sine[i] *= 2.0 * (1.0 + cosine[i]);
+            cosine[i] *= 2.0 * (2.0 + cosine[i]);
+        }
+    }
+}
+
+// Everything by series about the middle, in four steps: the times; the vibration's angle; the velocities and displacements;
+// the contact. False if they would be too long, or an input moves otherwise than in V and d.
 FC_INLINE bool with_series(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes) {
     const FcScene* scene = &plane->of_static_limit;
     const FcDrive* drive = &scene->drive;
@@ -160,17 +176,7 @@ FC_INLINE bool with_series(const FcPlane* plane, const FcPart* part, double u, d
     const double s = at.sine;
     double sine[POINTS];
     double cosine[POINTS]; // less 1
-    const double pace = drive->omega * angle.factor;
-    for (int i = 0; i < POINTS; i++) {
-        sine[i] = series_sin(pace * x[i]);
-        cosine[i] = series_cos_less_1(pace * x[i]);
-    }
-    for (int k = 0; k < angle.count; k++) {
-        for (int i = 0; i < POINTS; i++) {
-            sine[i] *= 2.0 * (1.0 + cosine[i]);
-            cosine[i] *= 2.0 * (2.0 + cosine[i]);
-        }
-    }
+    turn(x, drive->omega, angle, sine, cosine);
     for (int i = 0; i < POINTS; i++) {
         nodes->t[i] = fc_min(fc_max(middle + x[i], part->start), part->end);
         nodes->phase[i] = (FcPhase){s + (s * cosine[i] + c * sine[i]), c + (c * cosine[i] - s * sine[i])};

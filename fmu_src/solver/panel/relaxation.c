@@ -152,6 +152,46 @@ FC_INLINE void exact_integrals(const FcNodes* nodes, double held, double limit, 
     map->heat_offset += held * held / limit * nodes->side * rest;
 }
 
+// The errors of the motion x, y at the points, and by P of all other starts. A settled force gets its exact integrals.
+FC_INLINE void estimate_errors(const FcNodes* nodes, const FcPanelStart* from, bool planar, bool relaxes,
+                               const double* z, const double* x, const double* y, const double* P,
+                               FcPanel* panel) {
+    double F[POINTS];
+    double FC_PAIRED slope[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        F[i] = nodes->sigma[i] * x[i];
+        slope[i] = nodes->tau[i] * nodes->V[i] - z[i] * x[i];
+    }
+    double held = 0.0;
+    if (from->limit_stands && !planar && relaxes) {
+        held = F[LAST];
+        exact_integrals(nodes, held, panel->limit, &panel->along);
+    }
+    double defect = relaxes ? fc_radau_unresolved(slope, panel->z) : 0.0;
+    double quadrature = fc_error_of_force(nodes, from->speed, held, relaxes, F, nodes->V);
+    if (planar) {
+        for (int i = 0; i < POINTS; i++) {
+            F[i] = nodes->sigma[i] * y[i];
+            slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
+        }
+        defect += relaxes ? fc_radau_unresolved(slope, panel->z) : 0.0;
+        quadrature += fc_error_of_force(nodes, from->speed, 0.0, relaxes, F, nodes->V_y);
+    }
+    if (from->scale != 0.0) {
+        for (int i = 0; i < POINTS; i++) {
+            F[i] = from->scale * nodes->sigma[i] * P[i];
+            slope[i] = -z[i] * P[i];
+        }
+        defect += relaxes ? from->scale * fc_radau_unresolved(slope, panel->z) : 0.0;
+        quadrature += fc_error_of_force(nodes, from->speed, 0.0, relaxes, F, nodes->V);
+    }
+    // In the plane r may be less between its ends than at both.
+    fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);
+}
+
+// The free panel, in four steps: the relaxation z of each point; the deflection at the points, for one start or for any;
+// the maps of deflection, impulse, work, drag and heat; the errors. Along a line with constant sigma and g all of it is a
+// closed form of the path.
 FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, bool planar,
                     bool for_any, FcPanel* panel) {
     const bool relaxes = !fc_may_stick(plane->scene->friction);
@@ -204,38 +244,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelSta
                   &panel->across);
     }
 
-    // The errors.
-    double F[POINTS];
-    double FC_PAIRED slope[POINTS];
-    for (int i = 0; i < POINTS; i++) {
-        F[i] = nodes->sigma[i] * x[i];
-        slope[i] = nodes->tau[i] * nodes->V[i] - z[i] * x[i];
-    }
-    double held = 0.0;
-    if (from->limit_stands && !planar && relaxes) {
-        held = F[LAST];
-        exact_integrals(nodes, held, panel->limit, &panel->along);
-    }
-    double defect = relaxes ? fc_radau_unresolved(slope, panel->z) : 0.0;
-    double quadrature = fc_error_of_force(nodes, from->speed, held, relaxes, F, nodes->V);
-    if (planar) {
-        for (int i = 0; i < POINTS; i++) {
-            F[i] = nodes->sigma[i] * y[i];
-            slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
-        }
-        defect += relaxes ? fc_radau_unresolved(slope, panel->z) : 0.0;
-        quadrature += fc_error_of_force(nodes, from->speed, 0.0, relaxes, F, nodes->V_y);
-    }
-    if (from->scale != 0.0) {
-        for (int i = 0; i < POINTS; i++) {
-            F[i] = from->scale * nodes->sigma[i] * P[i];
-            slope[i] = -z[i] * P[i];
-        }
-        defect += relaxes ? from->scale * fc_radau_unresolved(slope, panel->z) : 0.0;
-        quadrature += fc_error_of_force(nodes, from->speed, 0.0, relaxes, F, nodes->V);
-    }
-    // In the plane r may be less between its ends than at both.
-    fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);
+    estimate_errors(nodes, from, planar, relaxes, z, x, y, P, panel);
 }
 
 void fc_relaxation_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from,

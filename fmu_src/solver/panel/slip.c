@@ -67,6 +67,24 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
     return false;
 }
 
+// The directions n of the deflection at the points: the side along a line, else those of the angles. False if Newton's method
+// fails.
+static bool find_directions(const FcPlane* plane, const FcNodes* nodes, const FcPlaneBound* bound,
+                            FcVector delta, FcVector* n) {
+    double a[POINTS];
+    a[START] = atan2(delta.y, delta.x);
+    if (!plane->is_one_dimensional && !find_angles(nodes, bound, a[START], a)) {
+        return false;
+    }
+    for (int i = 0; i < POINTS; i++) {
+        n[i] = plane->is_one_dimensional ? (FcVector){delta.x < 0.0 ? -1.0 : 1.0, 0.0}
+                                         : (FcVector){cos(a[i]), sin(a[i])};
+    }
+    return true;
+}
+
+// In four steps: the bound at the points; the direction of the deflection there; the integrals, whose heat is the work less
+// the change of the stored energy; the errors, which are 0 along a line with a constant limit.
 bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel) {
     assert(from->push > 0.0 && (!plane->is_one_dimensional || from->delta.y == 0.0));
     FcPlaneCoefficients at[POINTS];
@@ -75,17 +93,9 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStar
     for (int i = 0; i < POINTS; i++) {
         at[i] = fc_nodes_at(nodes, i);
         bound[i] = fc_plane_bound(plane, &at[i], 1, nodes->t[i], nodes->phase[i]);
-        n[i] = (FcVector){from->delta.x < 0.0 ? -1.0 : 1.0, 0.0};
     }
-    if (!plane->is_one_dimensional) {
-        double a[POINTS];
-        a[START] = atan2(from->delta.y, from->delta.x);
-        if (!find_angles(nodes, bound, a[START], a)) {
-            return false;
-        }
-        for (int i = 0; i < POINTS; i++) {
-            n[i] = (FcVector){cos(a[i]), sin(a[i])};
-        }
+    if (!find_directions(plane, nodes, bound, from->delta, n)) {
+        return false;
     }
     double FC_PAIRED slope[POINTS];
     double F_x[POINTS];
@@ -109,8 +119,8 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStar
         map->impulse_offset += weight * F_x[i];
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
-        // The heat is the work, minus the stored energy, whose rate follows Stribeck's curve at once, minus
-        // the part of the stiffness.
+        // Heat is the work less the rate of the stored energy E = sigma D^2 / 2. That of the whole E is taken at the ends below,
+        // exactly, and has the part sigma' D^2 / 2 of the moving stiffness, which is no heat: it is added back here.
         const double power = force * (outwards + 0.5 * D * bound[i].log_sigma_rate);
         heat[i] = power / from->push;
         map->heat_offset += weight * power;

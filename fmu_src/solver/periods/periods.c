@@ -52,11 +52,11 @@ typedef struct {
         [2]; // m, the highest and the lowest start that meets no bound; infinite if not known
     FcStepResult total;
     double done; // periods
-    // After a period that anchor its bound: the last one that was kept.
+    // After a period that met its bound: the last one that was kept.
     FcStepResult anchor;
     double anchor_period; // periods; negative for none
     FcBristle
-        least; // the one with the smallest deflection at the end of a period that anchor its bound since then
+        least; // the one with the smallest deflection at the end of a period that met its bound since then
 } PeriodicSearch;
 
 static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of(result)); }
@@ -89,7 +89,7 @@ static double largest_free_start_of(PeriodicSearch* search, int side) {
     fc_plane_make(&plane, search->scene);
     const double farthest = side * fc_bound(&plane, 0, 0.0).D;
     FcStepResult end = {.delta = farthest, .evaluations = search->total.evaluations};
-    // With static friction the bound that is anchor is the one without the drop.
+    // With static friction the bound that is met is the one without the drop.
     const bool drops = fc_has_static_friction(search->scene->friction);
     fc_march_step(drops ? &plane.of_static_limit : search->scene, search->options, search->period, &end);
     search->total.evaluations = end.evaluations;
@@ -287,6 +287,24 @@ static bool still_drifts(const PeriodicSearch* search, FcVector* mean) {
     return !(hypot(mean->x - before.x, mean->y - before.y) <= allowed);
 }
 
+// Keeps the last period to compare later ones with. In an endless search the sums begin anew there: their size and the number
+// of free periods would take digits from the cycle's.
+static void move_anchor(PeriodicSearch* search, bool is_endless) {
+    FcStepResult* total = &search->total;
+    if (is_endless) {
+        fc_result_start(total, fc_bristle_of(total), total->evaluations);
+        search->done = 0.0;
+    }
+    search->anchor = *total;
+    search->anchor_period = search->done;
+    search->least.delta = INFINITY;
+}
+
+// Takes periods until one repeats another, none meets the bound any more, or they are too many. After each:
+// - It changes nothing: all later ones are like it.
+// - Free periods follow: they are taken at once, by a power of their map.
+// - It meets the bound, or the next will: its end is compared with the anchor, which moves ever farther. In the plane a step of
+//   Newton's method may be taken between two anchors.
 static void search_repetition(PeriodicSearch* search, double periods) {
     assert(search->is_bounded && search->done <= periods);
     FcStepResult* total = &search->total;
@@ -312,7 +330,7 @@ static void search_repetition(PeriodicSearch* search, double periods) {
         }
         const double n =
             was_free && search->done < periods ? free_periods(search, periods - search->done) : 0.0;
-        if (n == 0.0) { // it has anchor its bound, or will in the next period
+        if (n == 0.0) { // it has met its bound, or will in the next period
             meetings++;
             if (!was_free && (isinf(search->least.delta) || size_of(total) < fc_size(search->least))) {
                 search->least = fc_bristle_of(total);
@@ -326,13 +344,7 @@ static void search_repetition(PeriodicSearch* search, double periods) {
                 if (!still_drifts(search, &mean) && meetings > MAX_MEETINGS) {
                     return;
                 }
-                if (isinf(periods)) { // sums and number of free periods would take digits from the cycle's
-                    fc_result_start(total, fc_bristle_of(total), total->evaluations);
-                    search->done = 0.0;
-                }
-                search->anchor = *total;
-                search->anchor_period = search->done;
-                search->least.delta = INFINITY;
+                move_anchor(search, isinf(periods));
             } else if (may_step && !was_free &&
                        meetings < MAX_MEETINGS / 2 && // the mean over the last third must be one
                        take_newton_step(search->scene, (FcVector){before.delta, before.delta_y}, total)) {
