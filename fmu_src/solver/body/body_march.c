@@ -8,36 +8,15 @@
 #include "solver/body/body_stuck.h"
 #include "solver/integrate/dense_output.h"
 #include "solver/integrate/march.h"
+#include "solver/integrate/tuning.h"
 #include "solver/panel/panel_error.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
-// The safety factor on the estimated errors of delta and v, whose effects on each other are not estimated. Chosen empirically:
-// a third of it misses in hunts; three times of it costs 1.07.
-static const double SAFETY = 1000.0;
-// The part of its layer by which a reversal may be missed, over the root of the tolerance. Derived: the effect goes with its
-// square.
-static const double SHARE_OF_LAYER = 0.05;
-// The part of the tolerance by which a bristle may pass its bound, if its force drops there, and if it does not.
-static const double SHARE_OF_DROP = 1e-5;
-static const double SHARE_OF_EVENT = 1e-3;
-// A panel that begins beyond so many times the end of a Stribeck curve is cut at it.
-static const double MARGIN_OF_CURVE = 1.2;
-// Lengths, which decide the cost alone: by which the phase of the contact or of the ringing moves in a panel; of a panel in u;
-// and from a reversal in layers, beyond which the variable is t.
-static const double MAX_PHASE = 2.0;
-static const double MAX_U = 3.0;
-static const double END_OF_LAYER = 30.0;
-// The part of the tolerance that periods which are counted may change.
-static const double SHARE_OF_PERIODS = 0.1;
 // Derived: the tail of a function that is rounded, over it, some 100 eps.
 static const double ROUNDING = 3e-14;
 // Of a velocity, over the largest: 5 eps.
 static const double EPSILON = 1e-15;
-// Of two panels of which the longer shows an event and the shorter does not, this part of the longer is looked at next.
-static const double BETWEEN = 0.1;
-// Cuts at one event, refusals of one panel, and panels in a row that do not get on, at an event that rounding hides.
-enum { MAX_CUTS = 24, MAX_TRIES = 25, MAX_STALLED = 50 };
 
 typedef struct {
     const FcPlane* plane;
@@ -95,22 +74,23 @@ static Close event_function(const March* march, Event event, const FcNodes* node
         for (int i = 0; i < POINTS; i++) {
             f[i] = -march->at.side * panel->w[i];
         }
-        allowed = SHARE_OF_LAYER * sqrt(2.0 * tolerance * D * fabs(panel->rate[LAST].w));
+        allowed = FC_BODY_SHARE_OF_LAYER * sqrt(2.0 * tolerance * D * fabs(panel->rate[LAST].w));
         return (Close){rounding, fc_max(rounding, allowed)};
     case MEETING: // of the squares, which are smooth where delta is 0
         for (int i = 0; i < POINTS; i++) {
             f[i] = (panel->delta[i] - radius(nodes, i)) * (panel->delta[i] + radius(nodes, i));
         }
-        allowed =
-            fc_max(1e-15, (fc_has_static_friction(friction) ? SHARE_OF_DROP : SHARE_OF_EVENT) * tolerance);
+        allowed = fc_max(1e-15,
+                         (fc_has_static_friction(friction) ? FC_BODY_SHARE_OF_DROP : FC_BODY_SHARE_OF_EVENT) *
+                             tolerance);
         // One that relaxes may come to it without an end.
         return (Close){(march->at.kind == FC_RELAXES ? allowed : 4e-16) * D * D, allowed * D * D};
     case END_OF_PUSH: // a velocity, over that of the ringing
         for (int i = 0; i < POINTS; i++) {
             f[i] = -panel->rate[i].push;
         }
-        allowed =
-            SHARE_OF_EVENT * tolerance * march->interval->force / sqrt(march->body->m * nodes->sigma[LAST]);
+        allowed = FC_BODY_SHARE_OF_EVENT * tolerance * march->interval->force /
+                  sqrt(march->body->m * nodes->sigma[LAST]);
         return (Close){rounding, fc_max(rounding, allowed)};
     case JUMP: // along a bound that follows w: the damper takes all of the mass's inertia
         for (int i = 0; i < POINTS; i++) {
@@ -121,7 +101,7 @@ static Close event_function(const March* march, Event event, const FcNodes* node
         for (int i = 0; i < POINTS; i++) {
             f[i] = FC_END_OF_CURVE * friction->V_S - fabs(panel->w[i]);
         }
-        allowed = 0.5 * (MARGIN_OF_CURVE - 1.0) * FC_END_OF_CURVE * friction->V_S;
+        allowed = 0.5 * (FC_BODY_MARGIN_OF_CURVE - 1.0) * FC_END_OF_CURVE * friction->V_S;
         return (Close){allowed, allowed};
     }
 }
@@ -152,7 +132,7 @@ static Event first_event(const March* march, const FcNodes* nodes, const FcBodyP
     const FcFriction* friction = friction_of(march);
     const FcKind kind = march->at.kind;
     if (fc_has_stribeck_curve(friction) && kind != FC_STICKS &&
-        fabs(panel->w[START]) > MARGIN_OF_CURVE * FC_END_OF_CURVE * friction->V_S) {
+        fabs(panel->w[START]) > FC_BODY_MARGIN_OF_CURVE * FC_END_OF_CURVE * friction->V_S) {
         *place = place_of(march, CURVE, nodes, panel);
         if (*place <= 1.0) {
             return CURVE;
@@ -263,7 +243,8 @@ static double error_ratio_of(const March* march, const FcNodes* nodes, const FcB
     const double energy =
         share_of_mean * (fc_error_of_force(nodes, march->speed, 0.0, kind != FC_STICKS, F, panel->w) +
                          fc_radau_quadrature_error(damped));
-    return fc_max(SAFETY * motion, FC_SAFETY / FC_SHARE_OF_MEAN * energy) / fc_allowed_force(interval);
+    return fc_max(FC_BODY_SAFETY * motion, FC_SAFETY / FC_SHARE_OF_MEAN * energy) /
+           fc_allowed_force(interval);
 }
 
 // The longest duration [s] of the next panel, before it is judged.
@@ -272,7 +253,7 @@ static double planned(const March* march) {
     const FcKind kind = march->at.kind;
     assert(march->t <= march->part.end && kind != FC_NO_BRISTLE);
     const double ringing = sqrt(march->interval->stiffness / march->body->m);
-    double h = fc_min(march->part.end - march->t, MAX_PHASE * fc_smooth_time(&march->interval->pace));
+    double h = fc_min(march->part.end - march->t, FC_BODY_MAX_PHASE * fc_smooth_time(&march->interval->pace));
     if (march->h > 0.0) {
         h = fc_min(h, march->h);
     }
@@ -301,7 +282,9 @@ static double planned(const March* march) {
     h = fc_min(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
     const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
     h = jerk > 0.0 ? fc_min(h, cbrt(6.0 * way / jerk)) : h;
-    return march->is_known ? fc_min(h, MAX_PHASE / ringing) : march->h > 0.0 ? h : fc_min(h, 1.0 / ringing);
+    return march->is_known  ? fc_min(h, FC_BODY_MAX_PHASE / ringing)
+           : march->h > 0.0 ? h
+                            : fc_min(h, 1.0 / ringing);
 }
 
 // Makes the next panel, as long as it is accurate; *h becomes its length in u. False if it cannot be solved.
@@ -311,7 +294,7 @@ static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcB
     *h = *h > 0.0 ? *h
                   : fc_time_map_u(in, march->part.end) - u; // what is planned is less than t is rounded by
     if (isfinite(in->length)) {
-        *h = fc_min(*h, MAX_U);
+        *h = fc_min(*h, FC_BODY_MAX_LENGTH_U);
     }
     assert(*h > 0.0);
     for (int tries = 0;; tries++) {
@@ -319,7 +302,7 @@ static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcB
         const double error_ratio = march->is_known ? 0.0
                                    : is_solved     ? error_ratio_of(march, nodes, panel)
                                                    : HUGE_VAL;
-        if (error_ratio <= 1.0 || tries >= MAX_TRIES) {
+        if (error_ratio <= 1.0 || tries >= FC_BODY_MAX_REJECTIONS) {
             const double grows =
                 tries > 0 ? 1.0 : fc_min(4.0, 0.9 * pow(fc_max(error_ratio, 1e-30), -1.0 / 16.0));
             march->h = march->is_known ? 0.0 : nodes->duration * grows;
@@ -337,13 +320,13 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
     double seen = *h; // the length of the last panel that shows the event
     bool is_solved = true;
     *event = first_event(march, nodes, panel, &place);
-    for (int cuts = 0; *event != NO_EVENT && cuts < MAX_CUTS; cuts++) {
+    for (int cuts = 0; *event != NO_EVENT && cuts < FC_BODY_MAX_CUTS; cuts++) {
         assert(place > 0.0 && place <= fc_max(1.5, seen / *h));
         *h *= place;
         is_solved = make(march, u, *h, nodes, panel);
         if (!is_solved) { // beyond the end of a push a long panel may have a solution, and a shorter one none
             seen = *h;
-            place = BETWEEN;
+            place = FC_BODY_BETWEEN;
             continue;
         }
         double f[POINTS];
@@ -351,7 +334,7 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         const bool is_there = fabs(f[LAST]) <= close;
         const Event now = first_event(march, nodes, panel, &place);
         // A short panel that begins as close to the event as it ends does not show that it comes.
-        const bool begins_there = fabs(f[START]) <= close && *h < BETWEEN * seen;
+        const bool begins_there = fabs(f[START]) <= close && *h < FC_BODY_BETWEEN * seen;
         if (is_there && (now == *event || (now == NO_EVENT && !begins_there))) {
             return true;
         }
@@ -362,9 +345,9 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         }
         const double slope = slope_at_end(f);
         const double step = slope > 0.0 ? -f[LAST] / slope : 0.0;
-        if ((begins_there || !(step > 0.0 && step < 0.5)) && *h < BETWEEN * seen) {
-            place =
-                BETWEEN * seen / *h; // a push that leaves 0 with its square: the long panel is rough there
+        if ((begins_there || !(step > 0.0 && step < 0.5)) && *h < FC_BODY_BETWEEN * seen) {
+            place = FC_BODY_BETWEEN * seen /
+                    *h; // a push that leaves 0 with its square: the long panel is rough there
             continue;
         }
         if (!(step > 0.0 && step < 0.5)) {
@@ -514,7 +497,7 @@ static bool take_free_time(March* march) {
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double rest = march->part.end - march->t;
     const double x = fc_body_stuck_free_time(stuck, at.static_limit / at.sigma, rest);
-    if (!(x >= rest || x * stuck->ringing > MAX_PHASE)) {
+    if (!(x >= rest || x * stuck->ringing > FC_BODY_MAX_PHASE)) {
         return false;
     }
     const double end = x >= rest ? march->part.end : march->t + x;
@@ -542,12 +525,12 @@ static bool lies_across(int side, const double w[POINTS]) {
 // The next panel, up to its first event.
 static bool take_panel(March* march) {
     const double ringing = sqrt(march->interval->stiffness / march->body->m);
-    march->is_known = (march->part.end - march->t) * ringing > MAX_PHASE &&
+    march->is_known = (march->part.end - march->t) * ringing > FC_BODY_MAX_PHASE &&
                       fc_body_stuck_start(march->plane, march->body, &march->at, march->t, &march->stuck);
     if (march->is_known && take_free_time(march)) {
         return true;
     }
-    if (march->t - march->part.in.center > END_OF_LAYER * march->part.in.length) {
+    if (march->t - march->part.in.center > FC_BODY_END_OF_LAYER * march->part.in.length) {
         use_variable(march, 0.0, INFINITY);
     }
     FcNodes nodes;
@@ -591,7 +574,7 @@ static bool march_part(March* march, double end) {
             return false;
         }
         stalled = march->t - before > 1e-15 * end ? 0 : stalled + 1;
-        if (stalled > MAX_STALLED) {
+        if (stalled > FC_BODY_MAX_STALLED) {
             return false;
         }
     }
@@ -615,7 +598,7 @@ static bool march_periods(March* march, double h) {
     const FcDrive* drive = &march->plane->scene->drive;
     const bool repeats = fc_drive_vibrates(drive) && !fc_drive_is_linear(drive) && march->body->F.rate == 0.0;
     const double period = 1.0 / drive->vibration.f;
-    const double allowed = SHARE_OF_PERIODS * fc_allowed_force(march->interval);
+    const double allowed = FC_BODY_SHARE_OF_PERIODS * fc_allowed_force(march->interval);
     const double damping = friction_of(march)->sigma_1 + friction_of(march)->sigma_2;
     while (repeats && h - march->t > 2.0 * period) {
         const FcBodyStart at = march->at;

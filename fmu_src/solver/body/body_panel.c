@@ -1,4 +1,5 @@
 #include "solver/body/body_panel.h"
+#include "solver/integrate/tuning.h"
 
 #include <assert.h>
 #include <math.h>
@@ -6,9 +7,6 @@
 #include "solver/panel/radau.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
-
-// The largest number of iterations of Newton's method. Chosen empirically, as in slip.c.
-enum { MAX_ITERATIONS = 12 };
 
 // g at the velocity w, and its slope by w.
 typedef struct {
@@ -124,7 +122,7 @@ FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const 
             w[i] = velocity.free[i] + nodes->V[i];
         }
     }
-    for (int tries = 0; tries <= MAX_ITERATIONS; tries++) {
+    for (int tries = 0; tries <= FC_MAX_ITERATIONS; tries++) {
         const bool is_first = relaxes && tries == 0; // with the guessed velocities, which do not follow e
         double by_w[STAGES];                         // of delta' tau
         double z[STAGES];
@@ -188,7 +186,7 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
     for (int i = 0; i < STAGES; i++) {
         panel->v[i] = start->v;
     }
-    for (int tries = 0; tries < MAX_ITERATIONS; tries++) {
+    for (int tries = 0; tries < FC_MAX_ITERATIONS; tries++) {
         double z[STAGES];
         double moved[STAGES]; // m (v - v_0) + sigma_1 (delta - delta_0)
         double by_v[STAGES];  // of that, over m

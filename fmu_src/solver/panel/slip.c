@@ -4,14 +4,12 @@
 #include <math.h>
 
 #include "model/extremes.h"
+#include "solver/integrate/tuning.h"
 #include "solver/panel/panel_error.h"
 #include "solver/panel/radau.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
-// The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
-// long. Half of it refuses good panels, twice of it costs time.
-enum { MAX_ITERATIONS = 12 };
 // The step of the angle [rad] below which Newton's method ends. Derived: its square is rounding, and so is, to the
 // finest tolerance, its multiple if a diagonal is cut and the method is of first order.
 static const double LAST_STEP = 1e-10;
@@ -32,7 +30,7 @@ static void guess_angles(const FcNodes* nodes, const FcPlaneBound* bound, double
 // The angles a at the stages, beginning at a_0, with the slope tau / D (V_y cos a - V sin a).
 static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double a_0, double* a) {
     guess_angles(nodes, bound, a_0, a);
-    for (int tries = 0; tries < MAX_ITERATIONS; tries++) {
+    for (int tries = 0; tries < FC_MAX_ITERATIONS; tries++) {
         double diagonal[STAGES];
         double left[STAGES];
         for (int i = 0; i < STAGES; i++) {

@@ -6,17 +6,9 @@
 
 #include "model/extremes.h"
 #include "solver/integrate/march.h"
+#include "solver/integrate/tuning.h"
 #include "solver/periods/period_interpolation.h"
 #include "solver/periods/segments.h"
-
-// The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
-// one by one.
-static const double FEWEST = 12.0;
-// The number of periods in which a bristle that meets its bound forgets its start: in the plane its angle; on
-// a line, if it slips for no time, all of it. Chosen empirically: fewer are refused more often, more cost
-// more. Each sample costs two times as many, so fewer periods than FEWEST_OF_SLIPS are computed one by one.
-enum { WARM_UP = 3 };
-static const double FEWEST_OF_SLIPS = 60.0;
 
 // One period, or the part [from, to] of it.
 static void take_part(const FcScene* scene, const FcSolverOptions* options, double k, double from, double to,
@@ -57,7 +49,8 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
     const bool is_bounded = fc_march_may_meet(scene);
     double longest = periods;
     double tries_at = 0.0;
-    double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
+    double alone =
+        FC_MIN_PERIODS; // periods that are taken one by one before the next try, if no block is smooth
     double k = 0.0;
     while (k < periods && total->evaluations <= FC_MAX_EVALUATIONS) {
         bool slipped = false;
@@ -74,7 +67,7 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
         const double phase = is_one_dimensional ? total->slip_time : 0.0;
         const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
         const double count = closes ? left - 1.0 : left;
-        const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
+        const double fewest = forgets ? FC_MIN_PERIODS_OF_SLIPS : FC_MIN_PERIODS;
         const FcBlock block = {.scene = scene,
                                .is_planar = is_planar,
                                .is_bounded = is_bounded,
@@ -83,7 +76,7 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
                                .count = floor(count),
                                .phase = phase,
                                .side = is_one_dimensional ? total->slip_side : 0,
-                               .warm_up = forgets ? WARM_UP : 0};
+                               .warm_up = forgets ? FC_WARM_UP : 0};
         bool taken = false;
         if (k >= tries_at && block.count >= fewest && k >= block.warm_up &&
             (slipped || !fc_has_broken_away(scene->friction, total->state))) {
@@ -107,7 +100,7 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
             }
         }
         if (taken) {
-            alone = FEWEST;
+            alone = FC_MIN_PERIODS;
             k += block.count + (closes ? 1.0 : 0.0);
         } else if (!is_bounded) {
             take_part(scene, options, k, 0.0, period, total);

@@ -13,19 +13,6 @@
 #include "solver/integrate/tuning.h"
 #include "solver/periods/segments.h"
 
-// FEWEST_POINTS, MAX_POINTS: the numbers of points of the interpolation. MAX_PART: the largest part of a
-// block's periods that may be points. Chosen empirically: a block that needs more gains nothing. Half of them
-// refuses more blocks.
-enum { FEWEST_POINTS = 4, MAX_POINTS = 17 };
-static const double MAX_PART = 0.7;
-// The largest accepted error at the last point but one, over that at the last. Chosen empirically: both are
-// seldom small by chance. Half of it costs points; three times of it let a work miss by 1.04 tolerances.
-static const double MAX_BEFORE = 10.0;
-
-// The number of parts of a block, or up to twice as many, between whose ends the bound is taken as linear; in each the
-// free bristle with the least margin is followed. Chosen empirically: half of them may miss a meeting, twice as many cost
-// evaluations.
-enum { MAX_PARTS = 64 };
 // The margin over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
 // it changes by a factor of up to 10 in the block.
 static const double NO_ROOM = 1e-3;
@@ -44,9 +31,9 @@ typedef struct {
     double period;   // s
     FcBristle start; // at the block
     double* evaluations;
-    int numbers;               // of a map, or of two in the plane
-    double place[MAX_POINTS];  // of the points, in [-2, 2]
-    Numbers point[MAX_POINTS]; // Newton's coefficients: divided differences
+    int numbers;                  // of a map, or of two in the plane
+    double place[FC_MAX_POINTS];  // of the points, in [-2, 2]
+    Numbers point[FC_MAX_POINTS]; // Newton's coefficients: divided differences
     int points;
 } Block;
 
@@ -191,13 +178,13 @@ static Numbers weights(const Block* block, const Numbers* typical) {
 // The angles of the points, over pi / 16: Chebyshev's, in an order that halves the angles between them. Of
 // those in between, one at the end of the block comes first, since errors are largest there, and then one
 // inside, where a kink would be.
-static const int ANGLE[MAX_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
+static const int ANGLE[FC_MAX_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
 
 // The place of period k in the block, in [-2, 2]: a length that keeps products of distances near 1.
 static double place_in(const Block* block, double k) { return 4.0 * k / (block->of->count - 1.0) - 2.0; }
 
 static double period_of_point(const Block* block, int j) {
-    assert(j >= 0 && j < MAX_POINTS);
+    assert(j >= 0 && j < FC_MAX_POINTS);
     return (block->of->count - 1.0) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
 }
 
@@ -218,7 +205,7 @@ static double largest_error(int count, const Numbers* weight, const double* erro
 static Numbers map_at(const Block* block, double k) {
     Numbers map = {.of = {0.0}};
     const double place = place_in(block, k);
-    assert(block->points <= MAX_POINTS);
+    assert(block->points <= FC_MAX_POINTS);
     for (int j = block->points - 1; j >= 0; j--) {
         for (int i = 0; i < block->numbers; i++) {
             map.of[i] = map.of[i] * (place - block->place[j]) + block->point[j].of[i];
@@ -241,7 +228,7 @@ static double less_foretold(const Block* block, double k, Numbers* map) {
 // none, or if a period has no map.
 static bool interpolate(Block* block) {
     const double may = allowed(block);
-    const double most = fc_min(MAX_POINTS, floor(MAX_PART * block->of->count));
+    const double most = fc_min(FC_MAX_POINTS, floor(FC_MAX_PART_OF_BLOCK * block->of->count));
     double before_last = HUGE_VAL;
     for (block->points = 0; block->points < most;) {
         const int j = block->points;
@@ -262,8 +249,8 @@ static bool interpolate(Block* block) {
         }
         block->points++;
         // The errors of a kink fall slowly, and one may be small by chance.
-        const double most_before = block->of->warm_up > 0 ? 1.0 : MAX_BEFORE;
-        if (j >= FEWEST_POINTS && last <= may && before_last <= most_before * may) {
+        const double most_before = block->of->warm_up > 0 ? 1.0 : FC_MAX_ERROR_BEFORE;
+        if (j >= FC_MIN_POINTS && last <= may && before_last <= most_before * may) {
             return true;
         }
         before_last = last;
@@ -271,7 +258,9 @@ static bool interpolate(Block* block) {
     return false;
 }
 
-static double periods_of_part(const Block* block) { return fc_max(1.0, floor(block->of->count / MAX_PARTS)); }
+static double periods_of_part(const Block* block) {
+    return fc_max(1.0, floor(block->of->count / FC_PARTS_OF_BLOCK));
+}
 
 // The time between a and b at which the push turns. If d does not vibrate, that is nearly the reversal of V.
 static double turn_of(FcPushed push, double a, double b, double* evaluations) {
@@ -347,11 +336,11 @@ typedef struct {
 
 // The bounds of the motion of a free bounded bristle in the periods of a block.
 typedef struct {
-    double stride;               // periods of a part
-    FcVector middle;             // m, of the swing, from the deflection at a period's start
-    double swing;                // m, about the middle
-    FcVector V, rate;            // m/s and m/s a period, without the vibration
-    double D[2 * MAX_PARTS + 2]; // m, the least bound of the periods at the ends of parts
+    double stride;                       // periods of a part
+    FcVector middle;                     // m, of the swing, from the deflection at a period's start
+    double swing;                        // m, about the middle
+    FcVector V, rate;                    // m/s and m/s a period, without the vibration
+    double D[2 * FC_PARTS_OF_BLOCK + 2]; // m, the least bound of the periods at the ends of parts
 } Margins;
 
 static Margins margins_of(const Block* block) {
@@ -373,7 +362,7 @@ static Margins margins_of(const Block* block) {
         const FcScene scene = scene_at(block, fc_min(i * margins.stride, block->of->count - 1.0));
         FcPlane plane;
         fc_plane_make(&plane, &scene);
-        assert(i < 2 * MAX_PARTS + 2);
+        assert(i < 2 * FC_PARTS_OF_BLOCK + 2);
         margins.D[i] = fc_scene_smallest_saturation(&plane.of_static_limit, block->period);
     }
     return margins;
@@ -381,7 +370,7 @@ static Margins margins_of(const Block* block) {
 
 static double margin_at(const Block* block, const Margins* margins, double k, FcBristle start) {
     const int i = (int)(k / margins->stride);
-    assert(i >= 0 && i < 2 * MAX_PARTS + 1);
+    assert(i >= 0 && i < 2 * FC_PARTS_OF_BLOCK + 1);
     const double length = fc_min(margins->stride, block->of->count - 1.0 - i * margins->stride);
     const double part = length > 0.0 ? (k - i * margins->stride) / length : 0.0;
     const double D = margins->D[i] + part * (margins->D[i + 1] - margins->D[i]);
@@ -403,10 +392,6 @@ static bool meets(const Block* block, const Place* place) {
 }
 
 // ---- a stuck bristle of ElasticPlastic, whose motion is known at any time ----
-
-// The number of times in a period at which its margin is looked at. Chosen empirically: of 240 scenes made to hide a
-// meeting half of them miss none. Twice as many cost evaluations.
-enum { PHASES = 8 };
 
 // A bristle that sticks in the whole block: its first scene, and that of its bound.
 typedef struct {
@@ -434,16 +419,16 @@ static double margin_of_stuck(const Stuck* of, double k, double phase) {
 static double least_margin(const Stuck* of, double k) {
     double least = HUGE_VAL;
     double at = 0.0;
-    for (int i = 0; i < PHASES; i++) {
-        const double margin = margin_of_stuck(of, k, (double)i / PHASES);
+    for (int i = 0; i < FC_PHASES; i++) {
+        const double margin = margin_of_stuck(of, k, (double)i / FC_PHASES);
         at = margin < least ? i : at;
         least = fc_min(least, margin);
     }
-    const double before = margin_of_stuck(of, k, (at - 1.0) / PHASES);
-    const double after = margin_of_stuck(of, k, (at + 1.0) / PHASES);
+    const double before = margin_of_stuck(of, k, (at - 1.0) / FC_PHASES);
+    const double after = margin_of_stuck(of, k, (at + 1.0) / FC_PHASES);
     const double bend = before - 2.0 * least + after;
     const double vertex = bend > 0.0 ? at + 0.5 * (before - after) / bend : at;
-    return fc_min(least, margin_of_stuck(of, k, vertex / PHASES));
+    return fc_min(least, margin_of_stuck(of, k, vertex / FC_PHASES));
 }
 
 // Whether a bristle that sticks in the block would meet its bound in it: it is followed through the tightest period and
@@ -503,7 +488,7 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
     FcStepResult result = *total;
     const bool is_watched = of->side == 0 && of->warm_up == 0 && of->is_bounded;
     const Margins margins = is_watched ? margins_of(block) : (Margins){.stride = of->count};
-    Place suspects[2 * MAX_PARTS + 1]; // the period with the least margin of each part
+    Place suspects[2 * FC_PARTS_OF_BLOCK + 1]; // the period with the least margin of each part
     int places = 0;
     Place least = {.margin = HUGE_VAL};
     for (double k = 0.0; k < of->count; k += 1.0) {
@@ -513,7 +498,7 @@ bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
             least = at.margin <= least.margin ? at : least;
             if (fmod(k + 1.0, margins.stride) == 0.0 || k == of->count - 1.0) {
                 if (least.margin <= 0.0) {
-                    assert(places < 2 * MAX_PARTS + 1);
+                    assert(places < 2 * FC_PARTS_OF_BLOCK + 1);
                     suspects[places++] = least;
                 }
                 least.margin = HUGE_VAL;

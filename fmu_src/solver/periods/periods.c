@@ -8,37 +8,13 @@
 #include "model/bound.h"
 #include "model/extremes.h"
 #include "solver/integrate/march.h"
+#include "solver/integrate/tuning.h"
 #include "solver/periods/multirevolution.h"
 #include "solver/periods/segments.h"
-
-// The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
-// minutes.
-static const double MAX_CHANGING_PERIODS = 1e6;
-
-// The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
-// costs a part of a period; twice of it accepts ends that still change by twice as much. If a bristle relaxes
-// by a small part in each period, the remaining distance is many times the change over a period. MIN_PART
-// is a change by rounding, and all that counts in ElasticPlastic.
-static const double SAME_END = 1e-10;
-static const double MIN_PART = 1e-4;
 
 // The largest distance from the largest_free_start of the free starts that counts as 0, over the largest_free_start. Rounding: 450 eps.
 // Twice of it moves the largest_free_start by as much.
 static const double ROUNDING_OF_EDGE = 1e-13;
-
-// The largest part of a start that a period may forget if its end determines its start: at one half the start
-// has twice the error of the end. More would multiply the error further.
-static const double MAX_FORGOTTEN = 0.5;
-
-// The largest number of periods that meet the bound before a repetition is given up. With static friction the
-// place of sticking may depend on the place of break-away. Then periods need not repeat, and the mean over
-// the last third of the meetings counts. Half as many would give a mean over fewer periods; twice as many
-// would cost twice the time.
-enum { MAX_MEETINGS = 1000 };
-// The same in the plane, over that, while the mean still drifts by more than the tolerance: a bristle that slips
-// little in each period turns slowly. Chosen empirically: half of it left a found scene 3e-5 of the force away,
-// twice of it costs twice the time of a chaotic motion.
-enum { LONGER_IF_DRIFTING = 4 };
 
 // Whole periods of a bounded bristle with its inputs held.
 typedef struct {
@@ -124,11 +100,6 @@ static void settle(const PeriodicSearch* search, FcStepResult* total) {
     total->delta_y = search->is_planar ? across->offset / map->relaxation : total->delta_y;
 }
 
-// What a period and the power of a map cost beside their evaluations, in evaluations. Chosen empirically: with them no watched
-// call with usual numbers takes a second.
-static const double OF_A_PERIOD = 10.0;
-static const double OF_A_POWER = 30.0;
-
 // Whether the period after n free ones meets the bound; n may be infinite.
 static bool meets_after(PeriodicSearch* search, double n) {
     assert(n >= 0.0 && search->has_free_map && search->is_bounded);
@@ -137,7 +108,7 @@ static bool meets_after(PeriodicSearch* search, double n) {
         settle(search, &end);
     } else {
         take_free(search, n, &end);
-        search->total.evaluations += OF_A_POWER;
+        search->total.evaluations += FC_WORK_OF_POWER;
     }
     const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
     const FcBristle reached = fc_project_onto_bound(search->scene, bristle);
@@ -194,7 +165,7 @@ static double free_periods_by_steps(PeriodicSearch* search, double left) {
 static double free_periods(PeriodicSearch* search, double left) {
     assert(left > 0.0);
     const FcMap map = free_map_of(search);
-    if (search->is_planar || map.relaxation > MAX_FORGOTTEN) {
+    if (search->is_planar || map.relaxation > FC_MAX_FORGOTTEN) {
         return free_periods_by_steps(search, left);
     }
     const double delta = search->total.delta;
@@ -240,16 +211,12 @@ static bool repeats(PeriodicSearch* search) {
         fc_max(fabs(total->delta - search->anchor.delta), fabs(total->delta_y - search->anchor.delta_y));
     if (search->anchor_period < 0.0 ||
         has_broken_away(search, total) != has_broken_away(search, &search->anchor) ||
-        !(changed <= SAME_END * size)) {
+        !(changed <= FC_SAME_END * size)) {
         return false;
     }
-    return changed <= SAME_END * MIN_PART * size ||
-           changed <= SAME_END * fc_min(1.0, free_map_of(search).relaxation) * size;
+    return changed <= FC_SAME_END * FC_MIN_CHANGE * size ||
+           changed <= FC_SAME_END * fc_min(1.0, free_map_of(search).relaxation) * size;
 }
-
-// The farthest that a step of Newton moves the deflection, over it. Chosen empirically: without a limit one of
-// 143 drawn scenes settles elsewhere, at half of it errors grow.
-static const double MAX_OF_NEWTON = 1.0;
 
 // In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that of a
 // period that repeats, by a step of Newton; the last period began at `from` [m].
@@ -267,7 +234,7 @@ static bool take_newton_step(const FcScene* scene, FcVector from, FcStepResult* 
     if (!isfinite(length)) {
         return false;
     }
-    const double most = MAX_OF_NEWTON * size_of(total);
+    const double most = FC_MAX_NEWTON_STEP * size_of(total);
     const double part = length > most ? most / length : 1.0;
     const FcBristle reached = fc_project_onto_bound(scene, (FcBristle){.delta = from.x + part * start.x,
                                                                        .delta_y = from.y + part * start.y,
@@ -316,9 +283,9 @@ static void search_repetition(PeriodicSearch* search, double periods) {
         search->is_planar && isinf(periods) && !fc_has_static_friction(search->scene->friction);
     double keep = 1.0;                    // the number of the next meeting that is kept
     FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
-    const int most = (search->is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MAX_MEETINGS;
+    const int most = (search->is_planar && isinf(periods) ? FC_LONGER_IF_DRIFTING : 1) * FC_MAX_MEETINGS;
     while (search->done < periods && total->evaluations <= FC_MAX_EVALUATIONS && meetings < most) {
-        total->evaluations += OF_A_PERIOD;
+        total->evaluations += FC_WORK_OF_PERIOD;
         const FcStepResult before = *total;
         total->meetings = 0;
         fc_march_step(search->scene, search->options, search->period, total);
@@ -341,12 +308,12 @@ static void search_repetition(PeriodicSearch* search, double periods) {
             // Each is kept half as long again as the last, so that a cycle of any length returns to it.
             if (meetings >= keep) {
                 keep = ceil(1.5 * meetings);
-                if (!still_drifts(search, &mean) && meetings > MAX_MEETINGS) {
+                if (!still_drifts(search, &mean) && meetings > FC_MAX_MEETINGS) {
                     return;
                 }
                 move_anchor(search, isinf(periods));
             } else if (may_step && !was_free &&
-                       meetings < MAX_MEETINGS / 2 && // the mean over the last third must be one
+                       meetings < FC_MAX_MEETINGS / 2 && // the mean over the last third must be one
                        take_newton_step(search->scene, (FcVector){before.delta, before.delta_y}, total)) {
                 search->anchor_period = -1.0; // periods repeat only if no step lies between them
             }
@@ -420,12 +387,12 @@ bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, doubl
         until_end = options_until_end(options, scene, h);
         options = &until_end;
     }
-    if (periods > MAX_CHANGING_PERIODS && is_linear) {
+    if (periods > FC_MAX_CHANGING_PERIODS && is_linear) {
         return fc_message_set(
             message,
             "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
             "at most %.9g of them are computed: the largest step is %.9g s",
-            h, periods, MAX_CHANGING_PERIODS, MAX_CHANGING_PERIODS / f);
+            h, periods, FC_MAX_CHANGING_PERIODS, FC_MAX_CHANGING_PERIODS / f);
     }
     double done = periods;
     if (periods < 2.0) {
