@@ -93,7 +93,8 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
                 *total = before;
             }
             longest = taken ? 2.0 * left : floor(0.5 * left);
-            if (longest < fewest + 1.0) { // of one more a block on a line would have too few
+            // A block on a line has one period less, the last one, which closes it.
+            if (longest < fewest + 1.0) {
                 longest = 2.0 * fewest + 2.0;
                 tries_at = k + alone;
                 alone *= 2.0;

@@ -275,7 +275,8 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
 }
 
 // The distance of both bounds less the way of the bristle from the one that it leaves to the other [m], in period k of
-// an ElasticPlastic bristle: below 0 it slips along both.
+// an ElasticPlastic bristle. A bristle leaves its bound where the push ends, and then moves as the surfaces do. If they move it by
+// more than the distance until they turn, it reaches the other bound: below 0 it slips along both.
 static double distance_less_way(const Block* block, double k) {
     const FcScene scene =
         scene_at(block, fc_min(k, block->of->count - 2.0)); // up to two periods are looked at
