@@ -11,7 +11,7 @@
 #include "message.h"
 #include "model/motion.h"
 #include "model/scene.h"
-#include "solver/body/body.h"
+#include "solver/body/body_step.h"
 #include "solver/input_jump.h"
 
 // The values of modelDescription.xml.

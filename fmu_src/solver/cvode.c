@@ -8,10 +8,11 @@
 //
 // With a mass (solver/body.h) V is w. The states are then those of the bristle, the impulse of its force, and the part of
 // the position that F_t makes; v follows from them. Reversals of w are events.
+#include "solver/cvode.h"
+
 #include <stdio.h>
 
 #include "model/extremes.h"
-#include "solver/body/body.h"
 
 // FC_NO_CVODE leaves it out of any build: SUNDIALS takes memory from the heap, which some targets do not have.
 #if defined(FC_WITH_SUNDIALS) && !defined(FC_NO_CVODE)

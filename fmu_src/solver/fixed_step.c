@@ -6,11 +6,12 @@
 // A communication step is cut into equal steps of at most solver.stepSize. Steps pass over reversals, as in
 // such an FMU. The equation is affine, so the implicit methods are solved exactly with one division. The
 // integrals of FcStepResult are quadrature equations of the same method.
+#include "solver/fixed_step.h"
+
 #include <assert.h>
 #include <math.h>
 
 #include "model/extremes.h"
-#include "solver/method.h"
 #include "solver/periods/segments.h"
 
 // What a step takes of FC_MAX_EVALUATIONS (solver.h), at most; with a bound, at which each step makes a scene. Chosen

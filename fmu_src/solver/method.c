@@ -4,6 +4,7 @@
 
 #include "model/bound.h"
 #include "solver/constant_step.h"
+#include "solver/fixed_step.h"
 #include "solver/periods/periods.h"
 
 // By cvode or a fixed step, segment by segment.

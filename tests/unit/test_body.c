@@ -1,5 +1,5 @@
 // A mass without a bristle against closed forms, and the acceleration of one whose kinetic bound moves with it.
-#include "solver/body/body.h"
+#include "solver/body/body_step.h"
 
 #include "check.h"
 #include "table_1.h"

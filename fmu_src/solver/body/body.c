@@ -7,8 +7,6 @@
 #include "model/extremes.h"
 #include "model/motion.h"
 #include "model/root.h"
-#include "solver/body/body_march.h"
-#include "solver/periods/segments.h"
 
 double fc_body_inertia(const FcScene* scene, FcBristle bristle, const FcBody* body) {
     assert(body->m > 0.0);
@@ -94,27 +92,4 @@ bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const ch
         "%.4g cycles in the step: set friction.sigma_1 to %.3g N s/m, or take friction.model = "
         "Coulomb",
         body->m, h, reason, 1e-3 * omega / FC_TWO_PI, omega * h / FC_TWO_PI, 0.4 * body->m * omega);
-}
-
-bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
-                  FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && options->tolerance > 0.0 && !fc_is_planar(scene, from));
-    fc_result_start(result, from, 0.0);
-    FcSegments segments;
-    fc_segments_start(&segments, scene, h);
-    while (fc_next_segment(&segments)) {
-        const bool is_separated = fc_scene_is_separated(segments.scene);
-        if (is_separated) {
-            fc_open_contact_step(result);
-        }
-        const bool is_rigid = is_separated || !fc_has_bristle(scene->friction);
-        const bool is_done =
-            is_rigid ? fc_body_rigid_step(segments.scene, options, segments.h, body, result, message)
-            : cvode  ? fc_body_cvode_step(cvode, segments.scene, options, segments.h, body, result, message)
-                     : fc_body_march_step(segments.scene, options, segments.h, body, result, message);
-        if (!is_done) {
-            return false;
-        }
-    }
-    return true;
 }

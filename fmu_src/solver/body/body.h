@@ -11,7 +11,7 @@
 #include <assert.h>
 
 #include "model/motion.h"
-#include "solver/method.h"
+#include "solver/solver.h"
 
 typedef struct {
     double m;        // kg, 0 without a mass
@@ -58,23 +58,8 @@ void fc_body_drop(const FcScene* scene, double m, double sigma_1, FcStepResult* 
 bool fc_body_rests(const FcScene* scene, const FcBody* body);
 double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* sticks);
 
-// The step [0, h], h [s] >= 0, of a scene along a line, whose V does not contain v: from a bristle that is within its bound,
-// and takes the body with it.
-// impulse, work and heat of the result are those of F_t, with its damping and viscous friction. Returns false, with
-// *message filled, if it refuses the step.
-bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
-                  FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message);
-
 // Refuses a step of h [s] with a bristle: names the ringing and what ends it, a damping ratio of 0.2. Returns false.
 bool fc_body_refuse(const FcScene* scene, const FcBody* body, double h, const char* reason,
                     FcMessage* message);
-
-// Takes *result and the body over a segment of it without a bristle: Coulomb's law, or an open contact (body_rigid.c).
-bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
-                        FcStepResult* result, FcMessage* message);
-
-// The same of a segment with a bristle (cvode.c).
-bool fc_body_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
-                        FcBody* body, FcStepResult* result, FcMessage* message);
 
 #endif

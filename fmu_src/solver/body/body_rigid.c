@@ -6,6 +6,8 @@
 //
 // A slip ends where s w falls to 0 and a stick where g^2 - F_t^2 does: at roots of the polynomials through the points of
 // a panel. The mass sticks or slips on by the force that would hold it.
+#include "solver/body/body_rigid.h"
+
 #include <assert.h>
 #include <float.h>
 #include <math.h>
@@ -13,7 +15,6 @@
 #include "model/constants.h"
 #include "model/extremes.h"
 #include "model/root.h"
-#include "solver/body/body.h"
 #include "solver/integrate/tuning.h"
 #include "solver/panel/radau.h"
 

@@ -1,0 +1,30 @@
+#include "solver/body/body_step.h"
+
+#include <assert.h>
+
+#include "solver/body/body_march.h"
+#include "solver/body/body_rigid.h"
+#include "solver/periods/segments.h"
+
+bool fc_body_step(const FcScene* scene, FcCvode* cvode, const FcSolverOptions* options, double h,
+                  FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && body->m > 0.0 && options->tolerance > 0.0 && !fc_is_planar(scene, from));
+    fc_result_start(result, from, 0.0);
+    FcSegments segments;
+    fc_segments_start(&segments, scene, h);
+    while (fc_next_segment(&segments)) {
+        const bool is_separated = fc_scene_is_separated(segments.scene);
+        if (is_separated) {
+            fc_open_contact_step(result);
+        }
+        const bool is_rigid = is_separated || !fc_has_bristle(scene->friction);
+        const bool is_done =
+            is_rigid ? fc_body_rigid_step(segments.scene, options, segments.h, body, result, message)
+            : cvode  ? fc_body_cvode_step(cvode, segments.scene, options, segments.h, body, result, message)
+                     : fc_body_march_step(segments.scene, options, segments.h, body, result, message);
+        if (!is_done) {
+            return false;
+        }
+    }
+    return true;
+}
