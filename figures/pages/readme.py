@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from figures.pages import diagrams, directions, laws, march
+from figures.pages import diagrams, directions, laws, march, solver
 from figures.pages.tutorial import PAGES, blocks
 from frictioncontact import style, table2
 from frictioncontact.command import add_fmu, add_output, command_line
@@ -181,6 +181,9 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "step_sizes": partial(step_sizes, fmu),
         "physics-open-contact": partial(laws.open_contact, fmu),
         "physics-static-friction": partial(laws.static_friction, fmu),
+        "solver-spans": solver.draw_spans,
+        "solver-controller": solver.draw_controller,
+        "solver-jump": partial(solver.draw_jump, fmu),
         "solver-panels": march.draw_panels,
         "solver-regimes": march.draw_regimes,
         "solver-period": partial(march.draw_map, fmu),
