@@ -41,7 +41,16 @@ def draw_spans(path: Path) -> None:
         axes.text(0.19, y + 0.57, words, fontsize=8.6, va="bottom", color=style.BLACK)
         for i, (start, end) in enumerate(zip(ends, ends[1:], strict=False)):
             chosen = QUESTION if i == which else ANSWER
-            axes.add_patch(Rectangle((start, y + 0.1), end - start, 0.42, lw=1.4, **chosen))
+            axes.add_patch(
+                Rectangle(
+                    (start, y + 0.1),
+                    end - start,
+                    0.42,
+                    lw=1.4,
+                    facecolor=chosen["fc"],
+                    edgecolor=chosen["ec"],
+                )
+            )
         if ends:
             shadow = ((ends[which], y + 0.1), (ends[which + 1], y + 0.1), (1.0, y - 0.48), (0.0, y - 0.48))
             axes.add_patch(Polygon(shadow, color=style.ORANGE, alpha=0.08, lw=0, zorder=0))
