@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from frictioncontact.errors import FrictionError
 from frictioncontact.fmu import FrictionFmu, Value, simulate
 from tools.bench.mass_inside import HELD, INSIDE, ROWS, coupled, error
 from tools.reference import scene, step
@@ -97,6 +99,27 @@ def test_a_sudden_force_slips_by_its_overshoot(fmu: FrictionFmu, zeta: float) ->
             session.step(4.0 / OMEGA)
             x, delta = session.read(("body.x", "delta"))
             assert (x - delta > 1e-6 * D) == slips
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.01, 0.5])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_the_fastest_ringing_is_solved_or_refused(fmu: FrictionFmu, zeta: float, tolerance: float) -> None:
+    """Dahl's law on 1 g and 6e12 N/m, 12 000 cycles in a step of 1 ms, within 1 s (sanitizers: 10)."""
+    m, sigma, pull = 1e-3, 6e12, 30.0
+    stiff: dict[str, Value] = {**BODY, "contact.sigma": sigma, "body.m": m, "body.F": pull}
+    damped: dict[str, Value] = {"friction.sigma_1": 2.0 * zeta * math.sqrt(sigma * m)}
+    with fmu.session({**stiff, **damped, "solver.tolerance": tolerance}) as session:
+        refused, begin = "", time.process_time()
+        try:
+            session.step(1e-3)
+        except FrictionError as error:
+            refused = str(error)
+        assert time.process_time() - begin < 10.0
+        if refused:
+            assert "body.m = 0.001 kg: the step of 0.001 s is refused" in refused
+            session.step(1e-8)  # the instance is as before
+        else:
+            assert session.get("F_t") == pytest.approx(pull, abs=tolerance * F_C)
 
 
 def test_coulomb_stops_a_mass_and_holds_it(fmu: FrictionFmu) -> None:
