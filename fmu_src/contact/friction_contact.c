@@ -442,7 +442,17 @@ static bool inputs_move(const double rate[FC_INPUT_COUNT]) {
     return moves;
 }
 
-bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
+// A step by h [s]: what it begins with, and its result.
+typedef struct {
+    FcScene scene; // without the body
+    FcScene moved; // with the body at the start; then the scene of the end, if that is another one
+    FcBody body;
+    FcContactResponse response; // at the start if nothing moves; then at the end
+    FcStepResult result;
+} Step;
+
+// Whether time, inputs, mass and contact allow a step.
+static bool check_step(FcFrictionContact* contact, double t, double h, Step* step, FcMessage* message) {
     if (!(h == 0.0 || h >= DBL_MIN) || !isfinite(t + h)) {
         return fc_message_set(
             message,
@@ -451,87 +461,113 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
             t, h, DBL_MIN);
     }
     const FcFrictionState* before = &contact->state;
-    FcScene scene;
-    scene_from(contact, t, 0.0, before->rates.next, 0.0, &scene);
-    if (!fc_check_inputs(&before->variables, message) ||
-        !fc_check_body(&before->variables, before->rates.next, message) ||
-        !fc_check_time(&scene.drive, t, message) || !fc_check_time(&scene.drive, t + h, message)) {
-        return false;
-    }
-    if (fc_scene_is_to_be_checked(&scene) && !fc_check_scene(&scene, h, message)) {
-        return false;
-    }
-    const FcVariables* v = &before->variables;
-    FcBody body = body_of(v, before->rates.next);
-    const bool has_body = body.m > 0.0;
-    FcScene moved; // seen by the bristle, and then at the end
+    FcScene* scene = &step->scene;
+    scene_from(contact, t, 0.0, before->rates.next, 0.0, scene);
+    step->body = body_of(&before->variables, before->rates.next);
+    return fc_check_inputs(&before->variables, message) &&
+           fc_check_body(&before->variables, before->rates.next, message) &&
+           fc_check_time(&scene->drive, t, message) && fc_check_time(&scene->drive, t + h, message) &&
+           (!fc_scene_is_to_be_checked(scene) || fc_check_scene(scene, h, message));
+}
+
+// The inputs jump to those of the step; then the method takes bristle and body through it.
+static bool take_step(FcFrictionContact* contact, double t, double h, Step* step, FcMessage* message) {
+    const FcFrictionState* before = &contact->state;
+    const FcScene* scene = &step->scene;
+    const bool has_body = step->body.m > 0.0;
+    const bool moves = !fc_drive_is_constant(&scene->drive);
     if (has_body) {
-        moved = scene_with_body(contact, &scene, t, before->rates.next);
+        step->moved = scene_with_body(contact, scene, t, before->rates.next);
     }
-    const FcScene* seen = has_body ? &moved : &scene;
+    const FcScene* seen = has_body ? &step->moved : scene;
     double heat;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcBristle start = fc_input_jump(seen, t, &before->bristle.past, &bristle, &heat);
-    FcStepResult result;
-    const FcMethod method = (FcMethod)v->solver.method;
-    const bool moves = !fc_drive_is_constant(&scene.drive);
-    FcContactResponse response;
+    const FcMethod method = (FcMethod)before->variables.solver.method;
     if (!moves) {
-        response = fc_scene_contact(&scene, 0.0);
+        step->response = fc_scene_contact(scene, 0.0);
     }
-    if (has_body || moves || !fc_method_formula(&scene, &response, method, h, start, &result)) {
-        const FcSolverOptions options = solver_options(v, seen, h, bristle);
-        if (has_body
-                ? !fc_body_step(&scene, method == FC_METHOD_CVODE ? contact->cvode[1] : NULL, &options, h,
-                                start, &body, &result, message)
-                : !fc_method_step(&scene, method, contact->cvode[0], &options, h, start, &result, message)) {
+    if (has_body || moves || !fc_method_formula(scene, &step->response, method, h, start, &step->result)) {
+        const FcSolverOptions options = solver_options(&before->variables, seen, h, bristle);
+        FcCvode* cvode = method == FC_METHOD_CVODE ? contact->cvode[1] : NULL;
+        if (has_body ? !fc_body_step(scene, cvode, &options, h, start, &step->body, &step->result, message)
+                     : !fc_method_step(scene, method, contact->cvode[0], &options, h, start, &step->result,
+                                       message)) {
             return false;
         }
     }
-    result.heat += heat;
+    step->result.heat += heat;
     if (!has_body) {
-        add_damping(&scene, h, start, &result);
+        add_damping(scene, h, start, &step->result);
     }
+    return true;
+}
 
-    // Evaluated at the phase of t + h, which is also that of the next step. A phase carried on from the
-    // step's start would lose digits with every period.
-    const double time_rest = rounding_of_sum(t, h);
-    // also one that the law does not use
-    const bool ends_elsewhere = has_body || moves || inputs_move(before->rates.next);
-    if (ends_elsewhere) {
-        scene_from(contact, t + h, time_rest, before->rates.next, h, &moved);
-        if (has_body) {
-            body.v =
-                body.sticks ? 0.0 - fc_drive_V(&moved.drive, 0.0) : body.v; // as the next step will see it
-            moved = fc_body_scene(&moved, &body, fc_bristle_of(&result));
-        }
-        response = fc_scene_contact(&moved, 0.0);
+// The scene at the end of a step from t by h [s], as the next step will see it, and its response. The scene is evaluated at the
+// phase of t + h, which is also that of the next step. A phase carried on from the step's start would lose digits with every
+// period.
+static const FcScene* end_scene(FcFrictionContact* contact, double t, double h, Step* step) {
+    const double* rate = contact->state.rates.next;
+    FcBody* body = &step->body;
+    const bool has_body = body->m > 0.0;
+    // An input that moves may be one that the law does not use.
+    if (!has_body && fc_drive_is_constant(&step->scene.drive) && !inputs_move(rate)) {
+        return &step->scene;
     }
-    const FcScene* end = ends_elsewhere ? &moved : &scene;
-    FcVector force;
-    const bool slips = h > 0.0 && result.state == FC_SLIPPING && !fc_scene_is_separated(end);
-    const FcBristle reached =
-        slips ? fc_scale_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
-    if (!find_force(end, &response, &body, reached, &force, message)) {
+    scene_from(contact, t + h, rounding_of_sum(t, h), rate, h, &step->moved);
+    if (has_body) {
+        body->v = body->sticks ? 0.0 - fc_drive_V(&step->moved.drive, 0.0) : body->v;
+        step->moved = fc_body_scene(&step->moved, body, fc_bristle_of(&step->result));
+    }
+    step->response = fc_scene_contact(&step->moved, 0.0);
+    return &step->moved;
+}
+
+// Whether the results of a step of h [s] and the sums with them are finite.
+static bool check_result(const FcVariables* v, double h, const Step* step, FcVector mean,
+                         FcMessage* message) {
+    const FcStepResult* result = &step->result;
+    if (isfinite(mean.x) && isfinite(mean.y) && isfinite(result->delta) && isfinite(result->delta_y) &&
+        isfinite(v->W_f + result->work) && isfinite(v->Q_f + result->heat) &&
+        isfinite(step->body.v + step->body.x)) {
+        return true;
+    }
+    const FcFastest of = fc_fastest(&step->scene.drive);
+    return fc_message_set(message,
+                          "the step by h = %.9g s gives a result beyond the largest number at %s = %.9g m/s, "
+                          "d = %.9g m",
+                          h, of.name, of.V, v->d);
+}
+
+// - Time, inputs, mass and contact are checked.
+// - The inputs jump to those of the step, and a method takes bristle and body through it.
+// - The scene at the end gives the force. A bristle that slips is moved onto its bound there.
+// - Results that are finite are stored; if anything is refused, the contact stays as it was.
+bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
+    Step step;
+    if (!check_step(contact, t, h, &step, message) || !take_step(contact, t, h, &step, message)) {
         return false;
     }
-    const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : force;
-    if (!isfinite(mean.x) || !isfinite(mean.y) || !isfinite(result.delta) || !isfinite(result.delta_y) ||
-        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat) || !isfinite(body.v + body.x)) {
-        const FcFastest of = fc_fastest(&scene.drive);
-        return fc_message_set(
-            message,
-            "the step by h = %.9g s gives a result beyond the largest number at %s = %.9g m/s, "
-            "d = %.9g m",
-            h, of.name, of.V, v->d);
+    FcVariables* v = &contact->state.variables;
+    const FcStepResult* result = &step.result;
+    const FcScene* end = end_scene(contact, t, h, &step);
+    const bool slips = h > 0.0 && result->state == FC_SLIPPING && !fc_scene_is_separated(end);
+    const FcBristle reached = slips ? fc_scale_onto_bound(end, fc_bristle_of(result)) : fc_bristle_of(result);
+    FcVector force;
+    if (!find_force(end, &step.response, &step.body, reached, &force, message)) {
+        return false;
+    }
+    const FcVector mean = h > 0.0 ? (FcVector){result->impulse / h, result->impulse_y / h} : force;
+    if (!check_result(v, h, &step, mean, message)) {
+        return false;
     }
     const FcPast past = fc_is_bounded(&v->friction) ? fc_past(end) : (FcPast){.sigma = 0.0};
-    commit(&contact->state, h, &result, reached, &past);
-    fc_set_outputs(&contact->state.variables, force, mean, &response);
-    contact->state.variables.body.v = body.v;
-    contact->state.variables.body.x = body.x;
+    commit(&contact->state, h, result, reached, &past);
+    fc_set_outputs(v, force, mean, &step.response);
+    v->body.v = step.body.v;
+    v->body.x = step.body.x;
     contact->state.clock.time = t + h;
-    contact->state.clock.rest = time_rest;
+    contact->state.clock.rest = rounding_of_sum(t, h);
     return true;
 }
 
