@@ -105,7 +105,54 @@ static void guess_velocities(const FcPlane* plane, const FcBody* body, const FcB
     }
 }
 
+// The coefficients of one iteration of Newton's method at the stages.
+typedef struct {
+    double by_w[STAGES]; // the derivative of delta' tau by w
+    double z[STAGES];    // minus that by delta
+    double left[STAGES]; // delta' tau
+} Linear;
+
+// Linearizes delta' = w - rho delta. The first velocities are guessed and do not follow e.
+FC_INLINE void linearize(const FcPlane* plane, const FcBodyStart* start, const FcNodes* nodes,
+                         const double w[STAGES], const double e[POINTS], bool is_guess, Linear* of) {
+    for (int i = 0; i < STAGES; i++) {
+        const double delta = start->delta + e[i];
+        double rho = 0.0;
+        double rho_slope = 0.0;
+        if (start->kind == FC_RELAXES) {
+            const Limit at = limit_at(plane, nodes->static_limit[i], w[i]);
+            const double per_path = start->side * nodes->sigma[i] / at.g;
+            rho = per_path * w[i];
+            rho_slope = per_path - rho * at.slope / at.g;
+        }
+        of->z[i] = nodes->tau[i] * rho;
+        of->by_w[i] = is_guess ? 0.0 : nodes->tau[i] * (1.0 - rho_slope * delta);
+        of->left[i] = nodes->tau[i] * w[i] - of->z[i] * delta;
+    }
+}
+
+// Solves for the change of e and adds it. Returns the largest change of the force [N].
+FC_INLINE double improve(const FcNodes* nodes, const Velocity* velocity, const Linear* of, double e[POINTS]) {
+    FcSystem row;
+    fc_collocation_begin(row, of->z);
+    for (int i = 0; i < STAGES; i++) {
+        row[i][FC_FIRST] = of->left[i] - fc_dot(POINTS, FC_RADAU.inverse[i], e);
+        for (int j = 0; j < STAGES; j++) {
+            row[i][j] += of->by_w[i] * velocity->slope[i][j];
+        }
+    }
+    fc_collocation_solve(row, true, false);
+    double step = 0.0;
+    for (int i = 0; i < STAGES; i++) {
+        e[i] += row[i][FC_FIRST];
+        step = fc_max(step, fabs(row[i][FC_FIRST]) * nodes->sigma[i]);
+    }
+    return step;
+}
+
 // delta' = w - rho delta, rho = sigma side w / g: Newton's method in e. A stuck bristle has rho = 0 and needs one solution.
+// In steps: v as a function of e; first values of w; then in each iteration the coefficients, the change of e, v and delta
+// from e, and whether the next change is small enough.
 FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const FcBodyStart* start,
                                 double close, const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     const bool relaxes = start->kind == FC_RELAXES;
@@ -123,39 +170,11 @@ FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const 
         }
     }
     for (int tries = 0; tries <= FC_MAX_ITERATIONS; tries++) {
-        const bool is_first = relaxes && tries == 0; // with the guessed velocities, which do not follow e
-        double by_w[STAGES];                         // of delta' tau
-        double z[STAGES];
-        double left[STAGES];
-        for (int i = 0; i < STAGES; i++) {
-            const double delta = start->delta + e[i];
-            double rho = 0.0;
-            double rho_slope = 0.0;
-            if (relaxes) {
-                const Limit at = limit_at(plane, nodes->static_limit[i], w[i]);
-                const double per_path = start->side * nodes->sigma[i] / at.g;
-                rho = per_path * w[i];
-                rho_slope = per_path - rho * at.slope / at.g;
-            }
-            z[i] = nodes->tau[i] * rho;
-            by_w[i] = is_first ? 0.0 : nodes->tau[i] * (1.0 - rho_slope * delta);
-            left[i] = nodes->tau[i] * w[i] - z[i] * delta;
-        }
-        FcSystem row;
-        fc_collocation_begin(row, z);
-        for (int i = 0; i < STAGES; i++) {
-            row[i][FC_FIRST] = left[i] - fc_dot(POINTS, FC_RADAU.inverse[i], e);
-            for (int j = 0; j < STAGES; j++) {
-                row[i][j] += by_w[i] * velocity.slope[i][j];
-            }
-        }
-        fc_collocation_solve(row, true, false);
+        const bool is_guess = relaxes && tries == 0;
+        Linear of;
+        linearize(plane, start, nodes, w, e, is_guess, &of);
+        const double step = improve(nodes, &velocity, &of, e);
         *solves += 1.0;
-        double step = 0.0; // N
-        for (int i = 0; i < STAGES; i++) {
-            e[i] += row[i][FC_FIRST];
-            step = fc_max(step, fabs(row[i][FC_FIRST]) * nodes->sigma[i]);
-        }
         for (int i = 0; i < STAGES; i++) {
             panel->v[i] = velocity.free[i] - fc_dot(POINTS, velocity.slope[i], e);
             w[i] = panel->v[i] + nodes->V[i];
@@ -166,7 +185,7 @@ FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const 
         }
         // The next step is the square of this one over the limit, at the most tenfold.
         const bool is_small = 10.0 * step * step < close * nodes->static_limit[START] && step < 0.05 * last;
-        if (!relaxes || (!is_first && (is_small || step <= 0.01 * close))) {
+        if (!relaxes || (!is_guess && (is_small || step <= 0.01 * close))) {
             return true;
         }
         last = step;

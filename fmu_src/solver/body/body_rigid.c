@@ -227,9 +227,8 @@ double fc_body_rigid_force(const FcScene* scene, const FcBody* body, bool* stick
     return fc_max(-limit, fc_min(limit, force));
 }
 
-bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
-                        FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && body->m > 0.0 && (!fc_has_bristle(scene->friction) || fc_scene_is_separated(scene)));
+// The state at the start of a step of the length h, and the error that a panel may have.
+static Rigid begin(const FcScene* scene, const FcSolverOptions* options, double h, const FcBody* body) {
     const FcScene seen = fc_body_scene(scene, body, (FcBristle){0});
     const double w = fc_drive_V(&seen.drive, 0.0);
     const double F = fc_max(fabs(body->F.value), fabs(body->F.value + body->F.rate * h));
@@ -243,6 +242,36 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
     if (fc_body_rests(&seen, body)) {
         choose(&of);
     }
+    return of;
+}
+
+// Adds the impulse of F_t, the way of the mass, and the work and heat of the panel up to `end`.
+static void add_panel(const Rigid* of, const Panel* panel, double end, double* impulse, double* moved,
+                      FcStepResult* result) {
+    const FcBody* body = of->body;
+    const FcDrive* drive = &of->scene->drive;
+    assert(end >= of->t);
+    if (of->sticks) {
+        *impulse += fc_body_pushed(body, end) - fc_body_pushed(body, of->t) +
+                    body->m * change_of_V(drive, of->t, end);
+        *moved -= fc_drive_displacement(drive, of->t, end);
+        return;
+    }
+    for (int i = 0; i < FC_STAGES; i++) {
+        const double weight = FC_RADAU.weight[i] * panel->h;
+        *impulse += weight * panel->F_t[i];
+        *moved += weight * panel->v[i];
+        result->work += weight * panel->F_t[i] * panel->w[i];
+        result->heat += weight * panel->F_t[i] * panel->w[i];
+    }
+}
+
+// A step goes from panel to panel, each in four steps: it is made as long as it is accurate; it is cut where its slip or
+// stick ends; its integrals are added; the mass sticks or slips on.
+bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
+                        FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && body->m > 0.0 && (!fc_has_bristle(scene->friction) || fc_scene_is_separated(scene)));
+    Rigid of = begin(scene, options, h, body);
     double impulse = 0.0;
     double moved = 0.0;
     const FcDrive* drive = &scene->drive;
@@ -265,19 +294,7 @@ bool fc_body_rigid_step(const FcScene* scene, const FcSolverOptions* options, do
         }
         const double end = panel.h < rest ? of.t + panel.h : h;
         assert(end >= of.t && end <= h);
-        if (of.sticks) {
-            impulse += fc_body_pushed(body, end) - fc_body_pushed(body, of.t) +
-                       body->m * change_of_V(&scene->drive, of.t, end);
-            moved -= fc_drive_displacement(&scene->drive, of.t, end);
-        } else {
-            for (int i = 0; i < FC_STAGES; i++) {
-                const double weight = FC_RADAU.weight[i] * panel.h;
-                impulse += weight * panel.F_t[i];
-                moved += weight * panel.v[i];
-                result->work += weight * panel.F_t[i] * panel.w[i];
-                result->heat += weight * panel.F_t[i] * panel.w[i];
-            }
-        }
+        add_panel(&of, &panel, end, &impulse, &moved, result);
         of.t = end;
         if (part < 1.0 && of.sticks) {
             of.sticks = false;

@@ -81,74 +81,100 @@ static bool find_directions(const FcPlane* plane, const FcNodes* nodes, const Fc
     return true;
 }
 
-// In four steps: the bound at the points; the direction of the deflection there; the integrals, whose heat is the work less
-// the change of the stored energy; the errors, which are 0 along a line with a constant limit.
-bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel) {
-    assert(from->push > 0.0 && (!plane->is_one_dimensional || from->delta.y == 0.0));
+// The bound and the deflection along it at the points of a panel.
+typedef struct {
     FcPlaneCoefficients at[POINTS];
     FcPlaneBound bound[POINTS];
-    FcVector n[POINTS];
-    for (int i = 0; i < POINTS; i++) {
-        at[i] = fc_nodes_at(nodes, i);
-        bound[i] = fc_plane_bound(plane, &at[i], 1, nodes->t[i], nodes->phase[i]);
-    }
-    if (!find_directions(plane, nodes, bound, from->delta, n)) {
-        return false;
-    }
-    double FC_PAIRED slope[POINTS];
-    double F_x[POINTS];
-    double F_y[POINTS];
-    double heat[POINTS]; // N, its power over a speed
+    FcVector n[POINTS];             // the direction of the deflection
+    double FC_PAIRED slope[POINTS]; // of its angle, times the duration
+    double F_x[POINTS];             // N
+    double F_y[POINTS];             // N
+    double heat[POINTS];            // N, its power over a speed
+} Slip;
+
+// Integrates the force, the work, the heat and the drag over the panel, and sets the deflection and the push at its points.
+// `push` [m/s] is that at the panel's start.
+static void integrate(const FcPlane* plane, const FcNodes* nodes, double push, Slip* slip, FcPanel* panel) {
+    assert(push > 0.0);
     FcMap* map = &panel->along;
     *map = panel->across = (FcMap){.relaxation = 1.0};
     panel->z = 0.0;
     for (int i = 0; i < POINTS; i++) {
-        const double turns = fc_across(n[i], at[i].V); // D a'
-        const double outwards = fc_product(n[i], at[i].V);
-        const double D = bound[i].D;
-        const double force = at[i].sigma * D;
+        const FcPlaneCoefficients* at = &slip->at[i];
+        const FcPlaneBound* bound = &slip->bound[i];
+        const FcVector n = slip->n[i];
+        const double turns = fc_across(n, at->V); // D a'
+        const double outwards = fc_product(n, at->V);
+        const double D = bound->D;
+        const double force = at->sigma * D;
         const double weight = FC_RADAU.weight[i] * nodes->tau[i];
-        slope[i] = nodes->tau[i] / D * turns;
+        slip->slope[i] = nodes->tau[i] / D * turns;
         panel->z += weight / D * outwards;
-        F_x[i] = force * n[i].x;
-        F_y[i] = force * n[i].y;
-        panel->delta[i] = (FcVector){D * n[i].x, D * n[i].y};
-        panel->to_bound[i] = fc_plane_push(plane, &at[i], &bound[i], n[i]);
-        map->impulse_offset += weight * F_x[i];
-        panel->across.impulse_offset += weight * F_y[i];
+        slip->F_x[i] = force * n.x;
+        slip->F_y[i] = force * n.y;
+        panel->delta[i] = (FcVector){D * n.x, D * n.y};
+        panel->to_bound[i] = fc_plane_push(plane, at, bound, n);
+        map->impulse_offset += weight * slip->F_x[i];
+        panel->across.impulse_offset += weight * slip->F_y[i];
         map->work_offset += weight * force * outwards;
         // Heat is the work less the rate of the stored energy E = sigma D^2 / 2. That of the whole E is taken at the ends below,
         // exactly, and has the part sigma' D^2 / 2 of the moving stiffness, which is no heat: it is added back here.
-        const double power = force * (outwards + 0.5 * D * bound[i].log_sigma_rate);
-        heat[i] = power / from->push;
+        const double power = force * (outwards + 0.5 * D * bound->log_sigma_rate);
+        slip->heat[i] = power / push;
         map->heat_offset += weight * power;
-        map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
+        map->drag_offset += weight * (bound->rate * outwards + turns * turns);
     }
-    const double D_start = bound[START].D;
-    const double D_end = bound[LAST].D;
+    const double D_start = slip->bound[START].D;
+    const double D_end = slip->bound[LAST].D;
     map->heat_offset -= 0.5 * (nodes->sigma[LAST] * D_end * D_end - nodes->sigma[START] * D_start * D_start);
     map->offset = panel->delta[LAST].x;
     panel->across.offset = panel->delta[LAST].y;
-    panel->sigma = nodes->sigma[LAST];
-    panel->limit = nodes->limit[LAST];
-    panel->rate = fc_product(n[LAST], at[LAST].V) / D_end;
-    const double force = F_x[LAST];
-    if (plane->is_one_dimensional && from->limit_stands &&
-        plane->scene->friction->sigma_1 == 0.0) { // it is exact
-        map->impulse_offset = force * nodes->duration;
-        map->work_offset = force * nodes->moved[LAST];
-        map->heat_offset = map->work_offset - fabs(force) * (D_end - D_start);
-        panel->end_error = panel->mean_error = 0.0;
-        return true;
-    }
+}
+
+// Replaces the integrals along a line with a constant limit by their exact values.
+static void put_exact(const FcNodes* nodes, const Slip* slip, FcPanel* panel) {
+    FcMap* map = &panel->along;
+    const double force = slip->F_x[LAST];
+    map->impulse_offset = force * nodes->duration;
+    map->work_offset = force * nodes->moved[LAST];
+    map->heat_offset = map->work_offset - fabs(force) * (slip->bound[LAST].D - slip->bound[START].D);
+    panel->end_error = panel->mean_error = 0.0;
+}
+
+static void estimate_errors(const FcPlane* plane, const FcNodes* nodes, double speed, const Slip* slip,
+                            FcPanel* panel) {
     double quadrature =
-        fc_error_of_force(nodes, from->speed, 0.0, true, F_x, nodes->V) + fc_error_of_mean(nodes, heat);
+        fc_error_of_force(nodes, speed, 0.0, true, slip->F_x, nodes->V) + fc_error_of_mean(nodes, slip->heat);
     double unresolved = 0.0;
     if (!plane->is_one_dimensional) {
-        quadrature += fc_error_of_force(nodes, from->speed, 0.0, true, F_y, nodes->V_y);
-        unresolved = fc_radau_unresolved(slope, fc_max(0.0, panel->z));
+        quadrature += fc_error_of_force(nodes, speed, 0.0, true, slip->F_y, nodes->V_y);
+        unresolved = fc_radau_unresolved(slip->slope, fc_max(0.0, panel->z));
     }
-    fc_set_errors(panel, 0.0, panel->rate * nodes->tau[LAST], panel->sigma * D_end, unresolved, quadrature);
+    fc_set_errors(panel, 0.0, panel->rate * nodes->tau[LAST], panel->sigma * slip->bound[LAST].D, unresolved,
+                  quadrature);
+}
+
+// In four steps: the bound at the points; the direction of the deflection there; the integrals, whose heat is the work less
+// the change of the stored energy; the errors, which are 0 along a line with a constant limit.
+bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel) {
+    assert(from->push > 0.0 && (!plane->is_one_dimensional || from->delta.y == 0.0));
+    Slip slip;
+    for (int i = 0; i < POINTS; i++) {
+        slip.at[i] = fc_nodes_at(nodes, i);
+        slip.bound[i] = fc_plane_bound(plane, &slip.at[i], 1, nodes->t[i], nodes->phase[i]);
+    }
+    if (!find_directions(plane, nodes, slip.bound, from->delta, slip.n)) {
+        return false;
+    }
+    integrate(plane, nodes, from->push, &slip, panel);
+    panel->sigma = nodes->sigma[LAST];
+    panel->limit = nodes->limit[LAST];
+    panel->rate = fc_product(slip.n[LAST], slip.at[LAST].V) / slip.bound[LAST].D;
+    if (plane->is_one_dimensional && from->limit_stands && plane->scene->friction->sigma_1 == 0.0) {
+        put_exact(nodes, &slip, panel);
+    } else {
+        estimate_errors(plane, nodes, from->speed, &slip, panel);
+    }
     return true;
 }
 

@@ -41,16 +41,57 @@ static double to_kink(const FcScene* scene, double k) {
     return nearest;
 }
 
+// How the next try goes.
+typedef struct {
+    double longest;  // periods of a block, at the most
+    double tries_at; // the period before which no block is tried
+    double alone;    // periods that are taken one by one before the next try, if no block is smooth
+} Tries;
+
+// After a block of `left` periods, its last one included, has been taken or refused: a longer block, a shorter one, or
+// some periods one by one.
+static void adapt(Tries* tries, bool taken, double left, double fewest, double k) {
+    tries->longest = taken ? 2.0 * left : floor(0.5 * left);
+    // A block on a line has one period less, the last one, which closes it.
+    if (tries->longest < fewest + 1.0) {
+        tries->longest = 2.0 * fewest + 2.0;
+        tries->tries_at = k + tries->alone;
+        tries->alone *= 2.0;
+    }
+    if (taken) {
+        tries->alone = FC_MIN_PERIODS;
+    }
+}
+
+// Takes the block from the phase of its first period on, and the rest of the period that closes it. False if the block is
+// refused: of *total only the evaluations have changed then.
+static bool take_block(const FcBlock* block, bool closes, FcStepResult* total) {
+    const double period = 1.0 / block->scene->drive.vibration.f;
+    FcStepResult before = *total;
+    assert(block->count >= FC_MIN_PERIODS && block->phase >= 0.0);
+    total->meetings = 0;
+    if (block->phase > 0.0) {
+        take_part(block->scene, block->options, block->first, 0.0, block->phase, total);
+    }
+    const bool taken = (block->side != 0 || total->meetings == 0) && fc_interpolate_periods(block, total);
+    if (taken && closes) {
+        take_part(block->scene, block->options, block->first + block->count, block->phase, period, total);
+    } else if (!taken) {
+        before.evaluations = total->evaluations;
+        *total = before;
+    }
+    return taken;
+}
+
+// In turn: one period that shows whether a bounded bristle slips in it; a block of periods, if one may be tried; without a
+// block, one period of a bristle without a bound.
 double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, double periods,
                           FcStepResult* total) {
     assert(periods >= 0.0 && periods == floor(periods) && fc_drive_vibrates(&scene->drive));
     const double period = 1.0 / scene->drive.vibration.f;
     const bool is_planar = fc_is_planar(scene, fc_bristle_of(total));
     const bool is_bounded = fc_march_may_meet(scene);
-    double longest = periods;
-    double tries_at = 0.0;
-    double alone =
-        FC_MIN_PERIODS; // periods that are taken one by one before the next try, if no block is smooth
+    Tries tries = {.longest = periods, .tries_at = 0.0, .alone = FC_MIN_PERIODS};
     double k = 0.0;
     while (k < periods && total->evaluations <= FC_MAX_EVALUATIONS) {
         bool slipped = false;
@@ -60,7 +101,7 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
             slipped = total->meetings > 0;
             k += 1.0;
         }
-        const double left = fc_min(longest, fc_min(periods - k, to_kink(scene, k)));
+        const double left = fc_min(tries.longest, fc_min(periods - k, to_kink(scene, k)));
         // On a line periods begin at the bound, if the bristle slips along it for any time.
         const bool is_one_dimensional = slipped && !is_planar && total->slip_side != 0;
         const bool forgets = slipped && !is_one_dimensional;
@@ -78,30 +119,12 @@ double fc_multirevolution(const FcScene* scene, const FcSolverOptions* options, 
                                .side = is_one_dimensional ? total->slip_side : 0,
                                .warm_up = forgets ? FC_WARM_UP : 0};
         bool taken = false;
-        if (k >= tries_at && block.count >= fewest && k >= block.warm_up &&
+        if (k >= tries.tries_at && block.count >= fewest && k >= block.warm_up &&
             (slipped || !fc_has_broken_away(scene->friction, total->state))) {
-            FcStepResult before = *total;
-            total->meetings = 0;
-            if (phase > 0.0) {
-                take_part(scene, options, k, 0.0, phase, total);
-            }
-            taken = (is_one_dimensional || total->meetings == 0) && fc_interpolate_periods(&block, total);
-            if (taken && closes) {
-                take_part(scene, options, k + block.count, phase, period, total);
-            } else if (!taken) {
-                before.evaluations = total->evaluations;
-                *total = before;
-            }
-            longest = taken ? 2.0 * left : floor(0.5 * left);
-            // A block on a line has one period less, the last one, which closes it.
-            if (longest < fewest + 1.0) {
-                longest = 2.0 * fewest + 2.0;
-                tries_at = k + alone;
-                alone *= 2.0;
-            }
+            taken = take_block(&block, closes, total);
+            adapt(&tries, taken, left, fewest, k);
         }
         if (taken) {
-            alone = FC_MIN_PERIODS;
             k += block.count + (closes ? 1.0 : 0.0);
         } else if (!is_bounded) {
             take_part(scene, options, k, 0.0, period, total);
