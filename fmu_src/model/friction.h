@@ -102,7 +102,7 @@ static inline bool fc_is_bounded(const FcFriction* friction) {
 
 // The velocity over V_S beyond which a Stribeck curve counts as 1: e^-25 of it remains. Chosen empirically; at half
 // of it e^-6 would remain.
-static const double FC_END_OF_PEAK = 5.0;
+#define FC_END_OF_PEAK 5.0
 
 // Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a
 // Stribeck curve.

@@ -155,8 +155,13 @@ static const double FACTOR_OF_STEP = 1.65; // its exponential
 // The largest number of steps: more than there are from the smallest number to the largest.
 static const double MAX_STEPS = 1e4;
 static const double STEP_OF_CURVE = 1.0 / 16.0;
-// The largest V over V_S with a curve: e^-49 of its peak remains.
-static const double END_OF_CURVE = 7.0;
+// The largest V over V_S with a curve: two V_S beyond the end of its peak, where e^-49 of it is left. Chosen: each V_S of it
+// costs at most 27 steps.
+static const double END_OF_CURVE = FC_END_OF_PEAK + 2.0;
+// Two places of the ramp, which is 1 long, that count as one. Chosen: far above the rounding of a root, far below a step.
+static const double SAME_PLACE = 1e-9;
+// What makes the number of equal steps at least 1. Chosen: a small part of a step.
+static const double ANY_STEP = 1e-3;
 
 // The next place to stop at after s.
 static double next_place(const Ramp* ramp, double s, double step) {
@@ -171,7 +176,7 @@ static double next_place(const Ramp* ramp, double s, double step) {
         const double reversal = ramp->along_change != 0.0 ? -ramp->along / ramp->along_change : -1.0;
         next = reversal > s && reversal < next ? reversal : next;
     }
-    const double place = next < 1.0 - 1e-9 ? fc_max(next, s + 1e-9) : 1.0;
+    const double place = next < 1.0 - SAME_PLACE ? fc_max(next, s + SAME_PLACE) : 1.0;
     assert(place > s && place <= 1.0);
     return place;
 }
@@ -183,7 +188,7 @@ static double step_from(const Ramp* ramp, double s) {
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
                          fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
                          fabs(ramp->log_V_S);
-    return (1.0 - s) / ceil(fc_min(moves / STEP_OF_LOG, MAX_STEPS) + 1e-3);
+    return (1.0 - s) / ceil(fc_min(moves / STEP_OF_LOG, MAX_STEPS) + ANY_STEP);
 }
 
 // The next place to stop at after s, or the one before it at which D turns.
@@ -196,7 +201,7 @@ static double next_stop(Ramp* ramp, double s, double step) {
     }
     double none = 0.0;
     const double turn = fc_root_between(bound_rate, ramp, s, rate, next, rate_next, 0.0, &none);
-    return turn > s + 1e-9 ? turn : next;
+    return turn > s + SAME_PLACE ? turn : next;
 }
 
 // Whether a bristle that has broken away sticks between two stops: neither V nor the motion after the ramp

@@ -8,6 +8,8 @@
 #ifndef FC_SOLVER_INTEGRATE_TUNING_H
 #define FC_SOLVER_INTEGRATE_TUNING_H
 
+#include "model/friction.h"
+
 // ---- accuracy ----
 
 // The one safety factor: on every estimated error, and in the plan of a panel's length. The method is of order
@@ -46,9 +48,9 @@ static const double FC_MAX_PHASE = 12.0;
 // The farthest way of a stuck bristle in a panel, in radii of its bound: so far the points show a meeting. 1.01, 1.00.
 static const double FC_MAX_RADII = 4.0;
 
-// The velocity over V_S beyond which a part of the interval has the variable of the layer, not of the curve:
-// e^-36 of the curve is left. Two thirds of it cost 1.005, 1.5 times of it 1.001.
-static const double FC_END_OF_CURVE = 6.0;
+// The velocity over V_S beyond which a part of the interval has the variable of the layer, not of the curve: one V_S
+// beyond the end of its peak, where e^-36 of it is left, one eps. Two thirds of it cost 1.005, 1.5 times of it 1.001.
+static const double FC_END_OF_CURVE = FC_END_OF_PEAK + 1.0;
 
 // ---- Newton's method of a panel ----
 
