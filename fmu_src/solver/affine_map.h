@@ -24,9 +24,14 @@ typedef struct {
     double heat_offset;    // J
 } FcMap;
 
+// The excess of a factor over 1 that is rounding: some 4500 eps, over the panels of an interval.
+#define FC_ROUNDING_OF_FACTOR 1e-12
+
 // Whether the map leads no two starts farther apart, but for rounding. Any does: the equation contracts, and so does a Radau
 // method, which is algebraically stable.
-static inline bool fc_map_contracts(const FcMap* map) { return !(fabs(1.0 - map->relaxation) > 1.0 + 1e-12); }
+static inline bool fc_map_contracts(const FcMap* map) {
+    return !(fabs(1.0 - map->relaxation) > 1.0 + FC_ROUNDING_OF_FACTOR);
+}
 
 void fc_map_append(FcMap* map, const FcMap* next); // the map, then the next one
 FcMap fc_map_power(const FcMap* one, double n);    // n a non-negative whole number

@@ -13,10 +13,8 @@
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
-// Derived: the tail of a function that is rounded, over it, some 100 eps.
-static const double ROUNDING = 3e-14;
-// Of a velocity, over the largest: 5 eps.
-static const double EPSILON = 1e-15;
+// |delta|^2 less D^2 at a meeting of a stuck bristle, over D^2: two roundings.
+static const double ROUNDING_OF_MEETING = 4e-16;
 
 typedef struct {
     const FcPlane* plane;
@@ -67,7 +65,7 @@ static Close event_function(const March* march, Event event, const FcNodes* node
     const FcFriction* friction = friction_of(march);
     const double tolerance = march->interval->tolerance;
     const double D = radius(nodes, LAST);
-    const double rounding = EPSILON * march->speed;
+    const double rounding = FC_BODY_ROUNDING * march->speed;
     double allowed;
     switch (event) {
     case REVERSAL:
@@ -80,11 +78,12 @@ static Close event_function(const March* march, Event event, const FcNodes* node
         for (int i = 0; i < POINTS; i++) {
             f[i] = (panel->delta[i] - radius(nodes, i)) * (panel->delta[i] + radius(nodes, i));
         }
-        allowed = fc_max(1e-15,
+        allowed = fc_max(FC_BODY_ROUNDING,
                          (fc_has_static_friction(friction) ? FC_BODY_SHARE_OF_DROP : FC_BODY_SHARE_OF_EVENT) *
                              tolerance);
         // One that relaxes may come to it without an end.
-        return (Close){(march->at.kind == FC_RELAXES ? allowed : 4e-16) * D * D, allowed * D * D};
+        return (Close){(march->at.kind == FC_RELAXES ? allowed : ROUNDING_OF_MEETING) * D * D,
+                       allowed * D * D};
     case END_OF_PUSH: // a velocity, over that of the ringing
         for (int i = 0; i < POINTS; i++) {
             f[i] = -panel->rate[i].push;
@@ -226,9 +225,9 @@ static double error_ratio_of(const March* march, const FcNodes* nodes, const FcB
     const double w = fc_max(fabs(panel->w[START]), fabs(panel->w[LAST]));
     const double forces = fabs(fc_input_after(march->body->F, nodes->t[LAST])) + fabs(F[LAST]) +
                           (2.0 * friction->sigma_1 + friction->sigma_2) * w;
-    const double rounded = ROUNDING * fc_max(nodes->tau[START], nodes->tau[LAST]);       // s
-    const double e_v = fc_max(0.0, m * fc_radau_unresolved(of_v, z) - rounded * forces); // N s
-    double of_end = (friction->sigma_1 + friction->sigma_2) / m * e_v;                   // N
+    const double rounded = FC_ROUNDING_OF_TAIL * fc_max(nodes->tau[START], nodes->tau[LAST]); // s
+    const double e_v = fc_max(0.0, m * fc_radau_unresolved(of_v, z) - rounded * forces);      // N s
+    double of_end = (friction->sigma_1 + friction->sigma_2) / m * e_v;                        // N
     double life = H;
     if (kind != FC_SLIPS) {
         const double r = panel->rate[LAST].relaxation;
@@ -375,7 +374,8 @@ static void append(March* march, const FcNodes* nodes, const FcBodyPanel* panel)
     const bool moves = slips && !fc_scene_stiffness_is_constant(scene);
     FcStepResult* sums = &march->sums;
     assert(nodes->duration >= 0.0);
-    assert(fabs(nodes->t[START] - march->t) <= 1e-14 * march->interval->duration); // rounding of the variable
+    assert(fabs(nodes->t[START] - march->t) <=
+           10.0 * FC_BODY_ROUNDING * march->interval->duration); // the variable rounds, too
     for (int i = 0; i < STAGES; i++) {
         const double weight = FC_RADAU.weight[i] * nodes->tau[i];
         const double F = nodes->sigma[i] * panel->delta[i];
@@ -403,7 +403,8 @@ static void append(March* march, const FcNodes* nodes, const FcBodyPanel* panel)
         sums->heat -= 0.5 * (nodes->sigma[LAST] * end * end - nodes->sigma[START] * start * start);
     }
     const double t = nodes->t[LAST];
-    const double rounded = 1e-15 * march->interval->duration; // of t in any variable: no layer is longer
+    const double rounded =
+        FC_BODY_ROUNDING * march->interval->duration; // of t in any variable: no layer is longer
     reach(march, march->part.end - t <= rounded ? march->part.end : t, end);
 }
 
@@ -546,7 +547,7 @@ static bool take_panel(March* march) {
         return false;
     }
     // What is 0 at the start is decided just after: the push of a slip, and the side of w, which may only have touched 0.
-    if (march->at.kind == FC_SLIPS && panel.rate[START].push <= EPSILON * march->speed &&
+    if (march->at.kind == FC_SLIPS && panel.rate[START].push <= FC_BODY_ROUNDING * march->speed &&
         panel.rate[0].push < 0.0) {
         begin_free(march, panel.w[START], panel.rate[START].w);
         return true;
@@ -573,7 +574,7 @@ static bool march_part(March* march, double end) {
         if (!take_panel(march) || march->solves * STAGES > FC_MAX_EVALUATIONS) {
             return false;
         }
-        stalled = march->t - before > 1e-15 * end ? 0 : stalled + 1;
+        stalled = march->t - before > FC_BODY_ROUNDING * end ? 0 : stalled + 1;
         if (stalled > FC_BODY_MAX_STALLED) {
             return false;
         }

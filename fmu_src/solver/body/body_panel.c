@@ -239,7 +239,8 @@ static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStar
         if (!isfinite(step)) {
             return false;
         }
-        if (is_linear || step * m <= 0.01 * close * nodes->duration || step <= 1e-15 * fabs(panel->v[LAST])) {
+        if (is_linear || step * m <= 0.01 * close * nodes->duration ||
+            step <= FC_BODY_ROUNDING * fabs(panel->v[LAST])) {
             for (int i = 0; i < STAGES; i++) {
                 const double w = panel->v[i] + nodes->V[i];
                 panel->delta[i] =

@@ -13,6 +13,9 @@
 #include "solver/panel/arithmetic.h"
 #include "solver/panel/nodes.h"
 
+// The rounding of a time, a velocity or a squared deflection, over the largest: 5 eps.
+static const double FC_BODY_ROUNDING = 1e-15;
+
 // The start of a panel.
 typedef struct {
     FcKind kind;  // FC_RELAXES, FC_STICKS or FC_SLIPS

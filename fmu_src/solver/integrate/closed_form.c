@@ -62,6 +62,9 @@ static double past_bound(void* context, double t) {
     return of->side * fc_drive_displacement(of->drive, of->from, t) - of->path;
 }
 
+// The way of a bristle that hardly moves, over its bound. Chosen: the push decides, and the way is too short to show it.
+static const double LITTLE_WAY = 1e-9;
+
 // Whether a stuck bristle meets its bound in the part; sets *end to when, and *path [m] to how far it is.
 static bool meets_in_part(FcIntegrator* integrator, double* end, double* path) {
     const FcInterval* interval = integrator->interval;
@@ -77,8 +80,8 @@ static bool meets_in_part(FcIntegrator* integrator, double* end, double* path) {
         return false;
     }
     // One with static friction that is at its bound and hardly moves breaks away only if it is pushed.
-    if (fc_has_static_friction(interval->scene->friction) && *path <= 1e-13 * D && moves <= 1e-9 * D &&
-        fc_is_unloading(integrator, (FcVector){side, 0.0})) {
+    if (fc_has_static_friction(interval->scene->friction) && *path <= FC_ROUNDING_OF_DEFLECTION * D &&
+        moves <= LITTLE_WAY * D && fc_is_unloading(integrator, (FcVector){side, 0.0})) {
         return false;
     }
     if (*path == 0.0) {

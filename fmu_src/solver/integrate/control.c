@@ -17,6 +17,8 @@ static const double ORDER = 17.0;
 static const double MAX_BEHIND = 30.0;
 // Rounding of a panel's force, over the limit: 900 eps. A smaller error would only shorten panels.
 static const double ROUNDING_OF_PANEL = 2e-13;
+// The part of a number of panels by which it may exceed a whole one. Chosen: far above rounding, and no panel is longer by more.
+static const double SAME_COUNT = 1e-9;
 
 // ln(x) to 0.03 and e^x to 3 %, by the bits of x: enough for a plan, and five times as fast.
 static inline double rough_log(double x) {
@@ -169,7 +171,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcP
                       : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
                                         : 0.5 * rough_log(1.0 + grows));
     }
-    const double length = h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
+    const double length = h > 0.0 ? left / ceil(left / h * (1.0 - SAME_COUNT)) : left;
     assert(length >= 0.0 && length <= left);
     return length;
 }

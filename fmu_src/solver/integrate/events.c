@@ -15,6 +15,13 @@ enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAG
 // released, or a place of a panel taken for its end: derived, since the rest of a push acts with its square.
 static const double ROUNDING_OF_PUSH = 1e-13;
 static const double LITTLE_PUSH = 1e-9;
+// The time after t at which a push that is 0 at t shows its sign, over the time in which it changes. Chosen: the change is
+// then far above rounding, and far below the whole.
+static const double SHORTLY_AFTER = 1e-6;
+// The rounding of a way, over the largest push times the time: two roundings of the time.
+static const double ROUNDING_OF_TIME = 4e-16;
+// The largest distance from the bound that counts as 0, over the bound. Chosen: if D moves by decades, nothing is near it.
+static const double MAX_DISTANCE = 1e-3;
 
 // The number of times in which a panel is cut at the same event. Derived: each cut leaves less than a tenth of the way
 // to it, or half of it.
@@ -44,7 +51,7 @@ bool fc_is_unloading(const FcIntegrator* integrator, FcVector n) {
     const FcVelocity now = fc_drive_velocity(&interval->scene->drive, t);
     const double time = fc_min(fc_smooth_time(&interval->pace),
                                fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
-    return fc_push_at(&pushed, t + 1e-6 * fc_min(time, interval->duration - t)) < 0.0;
+    return fc_push_at(&pushed, t + SHORTLY_AFTER * fc_min(time, interval->duration - t)) < 0.0;
 }
 
 // ---- the begin and the end of a slip ----
@@ -101,19 +108,19 @@ static void find_to_bound(const FcIntegrator* integrator, const FcNodes* nodes, 
 // heat and force allow.
 static double close_to_bound(const FcIntegrator* integrator, double D) {
     const FcInterval* interval = integrator->interval;
-    double distance = 1e-13 * D;
+    double distance = FC_ROUNDING_OF_DEFLECTION * D;
     if (fc_kind(integrator) == FC_STICKS) {
         const double of_time =
             fabs(integrator->at.u) * fc_time_map_dt_du(&integrator->part.in, integrator->at.u) +
             interval->duration;
-        distance += 4e-16 * fc_largest_push(integrator) * of_time;
+        distance += ROUNDING_OF_TIME * fc_largest_push(integrator) * of_time;
     } else { // an excess over the bound costs heat, whose tolerance goes with the path
         const double allowed =
             fc_min(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
             fc_min(1.0, interval->speed * interval->duration / D);
         distance = fc_max(distance, FC_SHARE_OF_EVENT * allowed);
     }
-    return 2.0 * D * fc_min(distance, 1e-3 * D); // if D moves by decades, nothing is near it
+    return 2.0 * D * fc_min(distance, MAX_DISTANCE * D);
 }
 
 // The part of a panel by which it may begin or end beside a top. Derived: |delta| is less by its square, 1e-12

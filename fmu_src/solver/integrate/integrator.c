@@ -15,6 +15,9 @@ static const double OF_MINIMA = 10.0;
 static const double OF_A_MODULUS = 4.0;
 static const double OF_NEWTON = 2.0;
 
+// What is left of a part after a panel, over the panel, that is rounding: 4500 eps, as of the parts (time_map.c).
+static const double ROUNDING_OF_END = 1e-12;
+
 FcKind fc_kind(const FcIntegrator* integrator) {
     const FcFriction* friction = integrator->interval->scene->friction;
     return !fc_has_bristle(friction) || integrator->bristle.is_rigid ? FC_NO_BRISTLE
@@ -226,7 +229,7 @@ void fc_accept_panel(FcIntegrator* integrator, const FcNodes* nodes, FcPanel* pa
     }
     // The rest of rounding is the part's.
     const double next = integrator->at.u + h;
-    const bool is_end = integrator->end - next < 1e-12 * h;
+    const bool is_end = integrator->end - next < ROUNDING_OF_END * h;
     const FcPlaneCoefficients at = fc_nodes_at(nodes, LAST);
     reach(integrator, is_end ? integrator->end : next, is_end ? integrator->part.end : nodes->t[LAST], &at);
 }

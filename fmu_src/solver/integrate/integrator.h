@@ -4,6 +4,9 @@
 
 #include "solver/integrate/control.h"
 
+// The distance of a deflection from its bound, over the bound, that counts as 0: rounding, 450 eps.
+static const double FC_ROUNDING_OF_DEFLECTION = 1e-13;
+
 typedef struct {
     const FcPlane* plane;
     const FcInterval* interval;

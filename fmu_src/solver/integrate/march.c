@@ -174,7 +174,7 @@ static void begin_at_bound(FcIntegrator* integrator, FcBristle bristle) {
     integrator->bristle.state = has_broken_away ? FC_CATCHING_UP : FC_FREE;
     if (integrator->bristle.is_bounded && fc_has_static_friction(friction) && !has_broken_away) {
         integrator->bristle.touches = size >= D * (1.0 - FC_ROUNDING_OF_BOUND);
-    } else if (integrator->bristle.is_bounded && size >= D * (1.0 - 1e-13)) {
+    } else if (integrator->bristle.is_bounded && size >= D * (1.0 - FC_ROUNDING_OF_DEFLECTION)) {
         integrator->bristle.state = FC_SLIPPING;
         integrator->sums.meetings = 1;
     }
@@ -206,6 +206,9 @@ static double longest_way(const FcDrive* drive, double h) {
     return (V + 0.5 * rate * h) * h + (fabs(drive->vibration.V_1) + fabs(drive->vibration.V_2)) * swing;
 }
 
+// The part of its bound by which a bristle is surely inside. Chosen: far above the rounding of the way and of the bound.
+static const double SURELY_INSIDE = 1e-9;
+
 // Whether a bristle sticks to the interval's end, since no bound is near enough. Its motion has no events then.
 static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
     const FcScene* scene = interval->scene;
@@ -213,7 +216,7 @@ static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
     const double farthest = fc_size(bristle) + longest_way(&scene->drive, h);
     const double D = fc_static_ratio(scene->friction) * fc_scene_smallest_saturation(scene, h);
     return fc_may_stick(scene->friction) && !fc_has_broken_away(scene->friction, bristle.state) &&
-           farthest < (1.0 - 1e-9) * D;
+           farthest < (1.0 - SURELY_INSIDE) * D;
 }
 
 static void march(const FcInterval* interval, FcStepResult* result) {

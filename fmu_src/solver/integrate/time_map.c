@@ -7,6 +7,7 @@
 #include "model/extremes.h"
 #include "model/root.h"
 #include "solver/integrate/tuning.h"
+#include "solver/panel/arithmetic.h"
 
 double fc_time_map_t(const FcTimeMap* in, double u) {
     return in->center + (isinf(in->length) ? u : in->length * sinh(u));
@@ -85,7 +86,7 @@ static int minima(const FcDrive* of, double h, double times[MAX_CENTERS]) {
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
         const Sample at = sample_at(&drive, 0.0);
-        if (at.bend > 0.0 && 1e-300 * fabs(at.rate) < at.bend) {
+        if (at.bend > 0.0 && FC_MIN_DIVISOR * fabs(at.rate) < at.bend) {
             times[count++] = -at.rate / at.bend;
         }
         return count;
@@ -278,12 +279,15 @@ static FcPart part_of(double start, double end, const Center* center, bool is_be
                     .speed_bound = center->speed_bound};
 }
 
+// The least share of a part that is a part of its own. Chosen: a shorter one costs a panel and resolves nothing.
+static const double MIN_SHARE = 1e-3;
+
 // A part on one side of its center, in two if a Stribeck curve ends in it.
 static int add_part(FcPart parts[FC_MAX_PARTS], int count, double start, double end, const Center* center,
                     int side) {
     const bool is_ahead = center->time >= end;
     const double edge = is_ahead ? center->time - center->edge : center->time + center->edge;
-    const double least = 1e-3 * (end - start);
+    const double least = MIN_SHARE * (end - start);
     if (isfinite(center->length) && edge - start > least && end - edge > least) {
         parts[count++] = part_of(start, edge, center, is_ahead, side);
         parts[count++] = part_of(edge, end, center, !is_ahead, side);

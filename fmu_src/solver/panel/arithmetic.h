@@ -25,6 +25,9 @@ static inline double fc_pair_sum(FcPair pair) { return pair[0] + pair[1]; }
 // The loops of a panel run over constants once these are inlined.
 #define FC_INLINE static inline __attribute__((always_inline))
 
+// The least divisor. Chosen: far below any limit and slope, and a quotient of usual numbers by it is finite.
+static const double FC_MIN_DIVISOR = 1e-300;
+
 // The product of two arrays of an even number n.
 FC_INLINE double fc_dot(int n, const double* a, const double* b) {
     FcPair sum = {0.0, 0.0};

@@ -27,7 +27,7 @@ FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double he
     const double over_speed = 1.0 / speed;
     for (int i = 0; i < FC_POINTS; i++) {
         const double v = V[i] * over_speed;
-        const double over_limit = 1.0 / fc_max(nodes->limit[i], 1e-300);
+        const double over_limit = 1.0 / fc_max(nodes->limit[i], FC_MIN_DIVISOR);
         const double heat = heats ? (F[i] + held) * over_limit * fabs(v) : 0.0;
         f[i] = (F[i] - held) * (1.0 + v + heat) * (nodes->tau[i] * over_duration);
     }

@@ -87,7 +87,7 @@ FC_INLINE double fc_larger(FcPair pair) { return fc_max(fabs(pair[0]), fabs(pair
 
 // a / b, at the most 1. No quotient overflows.
 FC_INLINE double fc_fall(double a, double b) {
-    const double over = b + 1e-300;
+    const double over = b + FC_MIN_DIVISOR;
     return fc_min(a, over) / over;
 }
 
@@ -125,6 +125,9 @@ FC_INLINE double fc_radau_unresolved(const double* slope, double z) {
     return fc_max(fabs(at_start), tail.top * tail.fall) * fc_acting_part(acts);
 }
 
+// The tail of a function that is rounded, over it. Derived: some 130 eps, by the sums over the points.
+static const double FC_ROUNDING_OF_TAIL = 3e-14;
+
 // The error of the integral of f over the panel, which is 1 long. A tail within the rounding of f counts as none.
 FC_INLINE double fc_radau_quadrature_error(const double* f) {
     double largest = 0.0;
@@ -132,7 +135,7 @@ FC_INLINE double fc_radau_quadrature_error(const double* f) {
         largest = fc_max(largest, fabs(f[i]));
     }
     const FcTail tail = fc_tail_of(f, fc_dot(FC_POINTS, FC_RADAU.start, f));
-    return fc_max(0.0, tail.top - 3e-14 * largest) * tail.fall * fc_acting_part(tail.fall);
+    return fc_max(0.0, tail.top - FC_ROUNDING_OF_TAIL * largest) * tail.fall * fc_acting_part(tail.fall);
 }
 
 #endif

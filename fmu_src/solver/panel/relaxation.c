@@ -200,7 +200,8 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcPanelSta
     double FC_PAIRED rate[POINTS]; // r times the duration
     double FC_PAIRED weight[POINTS];
     for (int i = 0; i < POINTS; i++) {
-        const double r = relaxes ? nodes->sigma[i] * nodes->speed[i] / fc_max(nodes->limit[i], 1e-300) : 0.0;
+        const double r =
+            relaxes ? nodes->sigma[i] * nodes->speed[i] / fc_max(nodes->limit[i], FC_MIN_DIVISOR) : 0.0;
         z[i] = nodes->tau[i] * r;
         rate[i] = nodes->duration * r;
         weight[i] = FC_RADAU.weight[i] * nodes->tau[i] * over_duration;

@@ -9,6 +9,7 @@
 #include "model/extremes.h"
 #include "solver/integrate/march.h"
 #include "solver/integrate/tuning.h"
+#include "solver/panel/arithmetic.h"
 #include "solver/periods/multirevolution.h"
 #include "solver/periods/segments.h"
 
@@ -92,7 +93,7 @@ static void settle(const PeriodicSearch* search, FcStepResult* total) {
     assert(search->has_free_map);
     const FcMap* map = &search->free_map;
     const FcMap* across = &search->free_map_across;
-    const double least = 1e-300 * fc_max(1.0, fc_max(fabs(map->offset), fabs(across->offset)));
+    const double least = FC_MIN_DIVISOR * fc_max(1.0, fc_max(fabs(map->offset), fabs(across->offset)));
     if (!(map->relaxation > least)) {
         return; // nothing relaxes
     }
