@@ -246,12 +246,14 @@ FcVector fc_friction_contact_force_rate(FcFrictionContact* contact) {
 
 bool fc_friction_contact_prepare(FcFrictionContact* contact, const FcVariables* of, FcMessage* message) {
     const bool has_body = of->body.m > 0.0;
-    const bool is_used = of->solver.method == FC_METHOD_CVODE;
+    const bool is_asked = of->solver.method == FC_METHOD_CVODE;
+    const bool is_second =
+        has_body && fc_has_bristle(&of->friction); // for what the march cannot make accurate
     struct FcCvode** cvode = &contact->cvode[has_body];
-    if (is_used && *cvode == NULL) {
+    if ((is_asked || is_second) && *cvode == NULL) {
         *cvode = fc_cvode_new(has_body, message);
     }
-    return !is_used || *cvode != NULL;
+    return !is_asked || *cvode != NULL;
 }
 
 // The finest tolerance of the bristle's force. Rounding: 4500 eps. A finer one would need digits that do not
@@ -343,7 +345,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     const FcBristle first = first_bristle(&fresh);
     v->delta = first.delta;
     v->delta_y = first.delta_y;
-    state->bristle.state = first.state;
+    state->bristle.state = (int)first.state;
     const FcScene scene = fc_friction_contact_scene_moving(&fresh, NULL);
     const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_project_onto_bound(&scene, first));
     const bool is_within = fc_is_bounded(&v->friction) && fc_size(first) <= within;
@@ -417,7 +419,7 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result,
                    const FcPast* past) {
     FcVariables* v = &state->variables;
     v->body.F += state->rates.next[FC_INPUT_F] * h;
-    state->bristle.state = reached.state;
+    state->bristle.state = (int)reached.state;
     state->bristle.past = *past;
     v->V = velocity_after(v->V, state->rates.next[FC_INPUT_V], h);
     v->V_y = velocity_after(v->V_y, state->rates.next[FC_INPUT_V_Y], h);
@@ -489,8 +491,8 @@ static bool take_step(FcFrictionContact* contact, double t, double h, Step* step
     }
     if (has_body || moves || !fc_method_formula(scene, &step->response, method, h, start, &step->result)) {
         const FcSolverOptions options = solver_options(&before->variables, seen, h, bristle);
-        FcCvode* cvode = method == FC_METHOD_CVODE ? contact->cvode[1] : NULL;
-        if (has_body ? !fc_body_step(scene, cvode, &options, h, start, &step->body, &step->result, message)
+        if (has_body ? !fc_body_step(scene, method, contact->cvode[1], &options, h, start, &step->body,
+                                     &step->result, message)
                      : !fc_method_step(scene, method, contact->cvode[0], &options, h, start, &step->result,
                                        message)) {
             return false;

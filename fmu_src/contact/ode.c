@@ -241,7 +241,7 @@ static void begin_state(FcFrictionContact* contact) {
         bristle.state = FC_FREE;
     }
     move_to(contact, fc_delta(bristle), heat);
-    state->bristle.state = fc_bristle_state(&now.scene, bristle);
+    state->bristle.state = (int)fc_bristle_state(&now.scene, bristle);
     state->bristle.past = fc_past(&now.scene);
     Slip slip;
     if (slips_along(contact, &slip)) { // it is there, apart from rounding

@@ -13,7 +13,7 @@ from frictioncontact.errors import UserError
 from tools.release.verify import SUMS, verify, write_sums
 
 Entries = dict[str, bytes]
-SOURCE = "sources/friction_contact.c"
+SOURCE = "sources/contact/friction_contact.c"
 SUMS_INSIDE = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
 
 

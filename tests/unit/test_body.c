@@ -25,7 +25,8 @@ static FcStepResult step(const FcScene* scene, double h, FcBody* body) {
     const FcSolverOptions options = {.tolerance = 1e-8, .force = F_C, .largest = F_C, .step_size = 1e-8};
     FcStepResult result;
     FcMessage message = {""};
-    CHECK(fc_body_step(scene, NULL, &options, h, (FcBristle){0}, body, &result, &message));
+    CHECK(fc_body_step(scene, FC_METHOD_COLLOCATION, NULL, &options, h, (FcBristle){0}, body, &result,
+                       &message));
     return result;
 }
 
@@ -63,7 +64,8 @@ static void a_mass_on_which_no_force_acts_drifts(void) {
     FcBody body = {.m = M, .v = 0.1};
     FcStepResult result;
     FcMessage message = {""};
-    CHECK(fc_body_step(&scene, NULL, &options, 7e-3, (FcBristle){0}, &body, &result, &message));
+    CHECK(fc_body_step(&scene, FC_METHOD_COLLOCATION, NULL, &options, 7e-3, (FcBristle){0}, &body, &result,
+                       &message));
     CHECK(body.v == 0.1);
     CHECK_WITHIN(body.x, 0.1 * 7e-3, 7e-17); // by the rounding of 470 panels
 }

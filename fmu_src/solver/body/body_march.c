@@ -286,7 +286,7 @@ static double planned(const March* march) {
                             : fc_min(h, 1.0 / ringing);
 }
 
-// Makes the next panel, as long as it is accurate; *h becomes its length in u. False if it cannot be solved.
+// Makes the next panel, as long as it is accurate; *h becomes its length in u. False if none is.
 static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel) {
     const FcTimeMap* in = &march->part.in;
     *h = fc_time_map_u(in, fc_min(march->part.end, march->t + planned(march))) - u;
@@ -305,14 +305,14 @@ static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcB
             const double grows =
                 tries > 0 ? 1.0 : fc_min(4.0, 0.9 * pow(fc_max(error_ratio, 1e-30), -1.0 / 16.0));
             march->h = march->is_known ? 0.0 : nodes->duration * grows;
-            return is_solved;
+            return error_ratio <= 1.0;
         }
         *h *= isfinite(error_ratio) ? fc_min(0.9, fc_max(0.2, 0.9 * pow(error_ratio, -1.0 / 14.0))) : 0.4;
     }
 }
 
 // Cuts the panel of the length *h in u at its first event, which its own points show better from cut to cut. False if a part
-// of it cannot be solved.
+// of it cannot be solved, or if the event does not come nearer.
 static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel,
                          Event* event) {
     double place;
@@ -355,7 +355,7 @@ static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBo
         }
         place = 1.0 + step;
     }
-    return is_solved;
+    return is_solved && *event == NO_EVENT;
 }
 
 // ---- the march ----
@@ -464,7 +464,7 @@ static void pass_reversal(March* march, const FcNodes* nodes, const FcBodyPanel*
     if (fc_has_stribeck_curve(friction)) {
         length = fc_min(length, friction->V_S / fabs(w_rate));
     }
-    const bool is_layer = length < march->interval->duration && fabs(away) <= length;
+    const bool is_layer = length >= DBL_MIN && length < march->interval->duration && fabs(away) <= length;
     use_variable(march, march->t - fc_max(0.0, away), is_layer ? length : INFINITY);
     march->h = is_layer ? march->interval->duration : 0.0;
 }
@@ -564,7 +564,7 @@ static bool take_panel(March* march) {
     return true;
 }
 
-// Marches to the end of the part; false if rounding or the work ends it before.
+// Marches to the end of the part; false if a panel is not accurate, or if rounding or the work ends it before.
 static bool march_part(March* march, double end) {
     assert(march->t <= end);
     march->part.end = end;
@@ -652,7 +652,7 @@ static void begin(March* march, FcBristle bristle) {
 }
 
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
-                        FcStepResult* result, FcMessage* message) {
+                        FcStepResult* result, bool* is_doubtful, FcMessage* message) {
     assert(h >= 0.0 && body->m > 0.0 && fc_has_bristle(scene->friction) && !fc_scene_is_separated(scene));
     if (h == 0.0) {
         return true;
@@ -668,7 +668,11 @@ bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, do
                    .is_bounded = fc_march_may_meet(scene)};
     begin(&march, fc_bristle_of(result));
     if (!march_periods(&march, h)) {
-        return fc_body_refuse(scene, body, h, "it needs too many evaluations; use smaller steps", message);
+        *is_doubtful = march.solves * STAGES <= FC_MAX_EVALUATIONS;
+        return fc_body_refuse(scene, body, h,
+                              *is_doubtful ? "its errors cannot be kept; use smaller steps"
+                                           : "it needs too many evaluations; use smaller steps",
+                              message);
     }
     assert(march.t == h);
     result->delta = march.at.delta;

@@ -5,8 +5,9 @@
 
 #include "solver/body/body_panel.h"
 
-// As fc_body_step, for a scene with a bristle, in one segment.
+// As fc_body_step, for a scene with a bristle, in one segment. If it refuses the step, *is_doubtful says whether a panel could
+// not be made accurate; otherwise the work is too much.
 bool fc_body_march_step(const FcScene* scene, const FcSolverOptions* options, double h, FcBody* body,
-                        FcStepResult* result, FcMessage* message);
+                        FcStepResult* result, bool* is_doubtful, FcMessage* message);
 
 #endif
