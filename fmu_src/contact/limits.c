@@ -108,6 +108,8 @@ bool fc_check_inputs(const FcVariables* v, FcMessage* message) {
     return v->contact.input == FC_CONTACT_LOAD || v->d > 0.0 || fail_input(message, "d", v->d, "m");
 }
 
+// At both ends of the step and in it, in this order: E, and its change; the contact's factors that E moves; whether the
+// contact is open throughout, which needs no more; the smallest d; the largest stiffness; the limit.
 bool fc_check_scene(const FcScene* scene, double h, FcMessage* message) {
     if (!fc_scene_depends_on_d(scene)) {
         return true;

@@ -190,7 +190,8 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
     return true;
 }
 
-// The range is shortened until the last terms are small, or rounding.
+// In three steps: a first range, 0 for an input that counts for nothing; the slope over the range, which is shortened until
+// the last terms are small, or rounding; the slope of the viscous force. The slope with the least error is kept.
 bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, FcVector* slope,
                             FcMessage* message) {
     FcFrictionContact held = at_time_0(contact);

@@ -78,6 +78,8 @@ static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unk
     return reason == NULL;
 }
 
+// In five steps: the arguments; the direction of the knowns; whether each unknown has a derivative by each known; the slopes
+// of all outputs along the direction; the asked ones, of which each must be a number before one is written.
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
                                         size_t nUnknown, const fmi2ValueReference vKnown_ref[], size_t nKnown,
                                         const fmi2Real dvKnown[], fmi2Real dvUnknown[]) {

@@ -134,6 +134,8 @@ static FcDirection direction_of(const FcFrictionContact* contact, const FcVariab
     };
 }
 
+// In four steps: the bristle to which the inputs lead; the direction of its deflection, if the bound leads it; what each
+// variable moves of that place and of the rate of the bound; the derivatives of the outputs along the direction.
 FcVariables fc_sensitivities(FcInstance* instance, const FcVariables* along) {
     FcFrictionContact* contact = &instance->contact;
     const bool is_ode = fc_instance_is_ode(instance);

@@ -11,6 +11,8 @@
 // takes about 60 to reach rounding; half of this would suffice, twice would cost nothing.
 enum { MAX_ROOT_STEPS = 200 };
 
+// Each iteration in three steps: the end, if the value or the bracket is small enough; the function at `part` of the bracket,
+// which replaces the end of its sign; the next part, by interpolation through three values or else by bisection.
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double* evaluations) {
     assert(a <= b && close >= 0.0);

@@ -283,6 +283,8 @@ static bool is_same(const FcScene* scene, double t, const FcPast* now, const FcP
            fabs(now->limit - past->limit) <= of_d * now->limit;
 }
 
+// Three outcomes: a bristle without a bound stays; one whose inputs do not jump, or without a contact on one side of the jump,
+// is projected onto its bound; all others follow a ramp between the inputs, on which they stick and slip in turn.
 FcBristle fc_input_jump(const FcScene* scene, double t, const FcPast* past, const FcBristle* from,
                         double* heat) {
     FcBristle bristle = *from;

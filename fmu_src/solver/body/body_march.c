@@ -312,7 +312,11 @@ static bool take_accurate(March* march, double u, double* h, FcNodes* nodes, FcB
 }
 
 // Cuts the panel of the length *h in u at its first event, which its own points show better from cut to cut. False if a part
-// of it cannot be solved, or if the event does not come nearer.
+// of it cannot be solved, or if the event does not come nearer. After each cut the panel
+// - is not solved: a length between it and the last one that shows the event is next
+// - ends at the event: done
+// - shows an event before its end: that one is next
+// - shows none: its end moves by Newton's method, or a longer panel is next, or the event is none
 static bool cut_at_event(March* march, double u, double* h, FcNodes* nodes, FcBodyPanel* panel,
                          Event* event) {
     double place;

@@ -196,6 +196,9 @@ FC_INLINE bool find_deflections(const FcPlane* plane, const FcBody* body, const 
 // delta = side D(w): Newton's method in v, which a bound that w does not move needs once.
 //
 //     m A^-1 (v - v_0) + sigma_1 A^-1 (delta - delta_0) = tau (F - side g - sigma_2 w)
+//
+// Each iteration in three steps: both sides and their derivatives by v at the stages; the change of v from the linear system;
+// the end, with delta from the last v, if that change is small or the bound does not move.
 static bool find_slip(const FcPlane* plane, const FcBody* body, const FcBodyStart* start, double close,
                       const FcNodes* nodes, FcBodyPanel* panel, double* solves) {
     const FcFriction* friction = plane->scene->friction;

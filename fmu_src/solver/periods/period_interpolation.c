@@ -472,6 +472,9 @@ static bool meets_in_some(const Block* block, const Place* suspects, int places)
     return false;
 }
 
+// In four steps: the maps of a few periods are interpolated, and refused if they are not smooth or predict other slips; all
+// periods are taken by their maps, and the period with the least margin of each part is noted; the noted ones without a
+// margin are marched, and the block is refused if one meets its bound; the result replaces *total.
 bool fc_interpolate_periods(const FcBlock* of, FcStepResult* total) {
     assert(of->count > 1.0 && of->phase >= 0.0 && of->first >= of->warm_up);
     Block found = {.of = of,

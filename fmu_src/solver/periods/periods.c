@@ -374,6 +374,12 @@ static FcSolverOptions options_until_end(const FcSolverOptions* options, const F
     return own;
 }
 
+// The ways of a step:
+// - less than two periods, or none: one march over all its segments
+// - two periods or more while an input moves linearly: multirevolution, which is refused if they are too many
+// - an open contact: no march
+// - held inputs: equal periods, of which those that repeat are taken at once
+// The rest after whole periods is marched. Too many evaluations are refused.
 bool fc_periods_step(const FcScene* scene, const FcSolverOptions* options, double h, FcStepResult* result,
                      FcMessage* message) {
     const double f = scene->drive.vibration.f;
