@@ -456,11 +456,11 @@ typedef struct {
 // Whether time, inputs, mass and contact allow a step.
 static bool check_step(FcFrictionContact* contact, double t, double h, Step* step, FcMessage* message) {
     if (!(h == 0.0 || h >= DBL_MIN) || !isfinite(t + h)) {
-        return fc_message_set(
-            message,
-            "the step from t = %.9g s by h = %.9g s: h must be 0 s, or a finite number of at "
-            "least %.9g s",
-            t, h, DBL_MIN);
+        fc_message_set(message,
+                       "the step from t = %.9g s by h = %.9g s: h must be 0 s, or a finite number of at "
+                       "least %.9g s",
+                       t, h, DBL_MIN);
+        return false; // also clang-tidy sees that no step follows
     }
     const FcFrictionState* before = &contact->state;
     FcScene* scene = &step->scene;
