@@ -6,9 +6,9 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "contact/limits.h"
-#include "model/constants.h"
+#include "contact/checks.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "solver/method.h"
 
 static bool are_equal(const FcContactParameters* a, const FcContactParameters* b) {

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "model/constants.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "model/plane.h"
 #include "model/root.h"
 

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "model/constants.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "solver/method.h"
 
 // The tolerance of the forces whose differences make a derivative: as fine as the solver goes

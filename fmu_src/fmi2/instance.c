@@ -6,6 +6,7 @@
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
 
+// Refuses an illegal call: one of the other interface, or one that the state of the instance does not allow.
 static void refuse_call(const FcInstance* instance, FcCall call) {
     const FcInterface of = (FcInterface)instance->experiment.interface;
     if (!(fc_call_table[call].interfaces & of)) {

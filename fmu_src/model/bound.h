@@ -44,7 +44,7 @@ FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle);
 // the bound at its end is known to fewer digits from its start.
 FcBristle fc_scale_onto_bound(const FcScene* scene, FcBristle bristle);
 
-// The heat [J] of a drop from |delta| = size [m] to the bound D [m], at the stiffness sigma [N/m]: the elastic energy that goes.
+// The heat of break-away [J], of a drop from |delta| = size [m] to the bound D [m], at the stiffness sigma [N/m]: the elastic energy that goes.
 static inline double fc_drop_heat(double sigma, double size, double D) {
     return 0.5 * sigma * (size - D) * (size + D);
 }

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "model/constants.h"
+#include "model/pi.h"
 #include "model/special.h"
 
 // p_m [Pa], Eq. 12 with Eq. 14.

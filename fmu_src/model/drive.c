@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
-#include "model/constants.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "model/root.h"
 
 // f t minus the nearest whole number, exact to the last bit of t: the product's rounding error is added back.

@@ -25,8 +25,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include "model/constants.h"
 #include "model/motion.h"
+#include "model/pi.h"
 #include "model/root.h"
 #include "solver/periods/segments.h"
 

@@ -1,4 +1,4 @@
-// An input or a parameter that jumps between two steps, as the limit of a fast ramp. The separation, E and V
+// A discontinuity: an input or a parameter that jumps between two steps, as the limit of a fast ramp. The separation, E and V
 // are linear along the ramp, from their values at the end of the last step to those at the start of the next
 // one. Effects of parameters are geometric. V does not move the bristle meanwhile. Only its bound moves it,
 // once the bound falls below |delta|:

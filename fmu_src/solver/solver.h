@@ -73,7 +73,7 @@ static inline void fc_result_start(FcStepResult* result, FcBristle start, double
         .delta = start.delta, .state = start.state, .evaluations = evaluations, .delta_y = start.delta_y};
 }
 
-// The largest work of one communication step, one settled state or one derivative of a settled mean, in evaluations: 0.2 to
+// The work limit: the largest work of one communication step, one settled state or one derivative of a settled mean, in evaluations: 0.2 to
 // 0.4 s of computing. A call that needs more is refused, so that no host seems to hang. Only inputs that move over many
 // orders of magnitude or many periods reach it, and motions that never repeat.
 #ifndef FC_MAX_EVALUATIONS

@@ -3,9 +3,9 @@
 #include <assert.h>
 #include <math.h>
 
-#include "model/constants.h"
 #include "model/extremes.h"
 #include "model/motion.h"
+#include "model/pi.h"
 #include "model/root.h"
 
 double fc_body_inertia(const FcScene* scene, FcBristle bristle, const FcBody* body) {

@@ -12,8 +12,8 @@
 #include <float.h>
 #include <math.h>
 
-#include "model/constants.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "model/root.h"
 #include "solver/integrate/tuning.h"
 #include "solver/panel/radau.h"

@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "model/constants.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "solver/integrate/tuning.h"
 
 // Derived: polynomials through 9 stages err by rho^-17 for a function that is analytic in a strip of the half width pi / 2,

@@ -1,4 +1,4 @@
-// The events of a bounded bristle: where it meets its bound, where its slip ends, and what happens there.
+// Event location for a bounded bristle: where it meets its bound, where its slip ends, and what happens there.
 //
 //     stuck or relaxing  --meets D, and is pushed (with static friction it drops to the kinetic bound)-->  slipping
 //     slipping           --the push has fallen to 0-->                                                     stuck or relaxing

@@ -1,4 +1,4 @@
-// The estimated errors of a panel's force, work and heat.
+// The error estimates of a panel: of its force, work and heat.
 #ifndef FC_SOLVER_PANEL_PANEL_ERROR_H
 #define FC_SOLVER_PANEL_PANEL_ERROR_H
 

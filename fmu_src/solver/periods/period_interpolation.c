@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 #include "model/bound.h"
-#include "model/constants.h"
 #include "model/extremes.h"
+#include "model/pi.h"
 #include "model/root.h"
 #include "solver/integrate/march.h"
 #include "solver/integrate/tuning.h"

@@ -1,7 +1,7 @@
-// The limits of inputs, parameters and time that single bounds do not cover, and the texts that name a fault: the variable,
+// Checks of inputs, parameters and time that single bounds do not cover, and the texts that name a fault: the variable,
 // its value and its bound. All return false with a message.
-#ifndef FC_CONTACT_LIMITS_H
-#define FC_CONTACT_LIMITS_H
+#ifndef FC_CONTACT_CHECKS_H
+#define FC_CONTACT_CHECKS_H
 
 #include "contact/friction_contact.h"
 

@@ -1,4 +1,4 @@
-#include "contact/limits.h"
+#include "contact/checks.h"
 
 #include <math.h>
 #include <stddef.h>
