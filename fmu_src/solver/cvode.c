@@ -402,7 +402,8 @@ static double integrate_state(FcCvode* solver, double duration) {
         const double most = has_body(solver) ? MAX_EVALUATIONS_OF_BODY : MAX_EVALUATIONS;
         if (flag >= 0 && solver->evaluations > most) {
             snprintf(solver->reason, sizeof solver->reason,
-                     "it needs more than %.0e evaluations; use smaller steps or collocation", most);
+                     "it needs more than %.0e evaluations; use smaller steps%s", most,
+                     has_body(solver) ? "" : " or collocation");
             flag = CV_TOO_MUCH_WORK;
         }
         if (flag < 0) {
