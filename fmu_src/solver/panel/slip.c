@@ -161,7 +161,7 @@ bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStar
     Slip slip;
     for (int i = 0; i < POINTS; i++) {
         slip.at[i] = fc_nodes_at(nodes, i);
-        slip.bound[i] = fc_plane_bound(plane, &slip.at[i], 1, nodes->t[i], nodes->phase[i]);
+        slip.bound[i] = fc_plane_bound(plane, &slip.at[i], FC_SLIPPING, nodes->t[i], nodes->phase[i]);
     }
     if (!find_directions(plane, nodes, slip.bound, from->delta, slip.n)) {
         return false;

@@ -291,10 +291,10 @@ static double distance_less_way(const Block* block, double k) {
     const double half = 0.5 * block->period;
     const double opposed = half + (turns + 0.5 - floor(turns + 0.5)) * block->period;
     const double leaves =
-        turn_of((FcPushed){&plane, side, {side, 0.0}}, opposed - half, opposed, block->evaluations);
+        turn_of((FcPushed){&plane, FC_SLIPPING, {side, 0.0}}, opposed - half, opposed, block->evaluations);
     const double nears =
-        turn_of((FcPushed){&plane, 0, {-side, 0.0}}, opposed, opposed + half, block->evaluations);
-    return fc_bound(&plane, side, leaves).D + fc_bound(&plane, 0, nears).D -
+        turn_of((FcPushed){&plane, FC_FREE, {-side, 0.0}}, opposed, opposed + half, block->evaluations);
+    return fc_bound(&plane, FC_SLIPPING, leaves).D + fc_bound(&plane, FC_FREE, nears).D -
            fabs(fc_drive_displacement(drive, leaves, nears));
 }
 
@@ -413,7 +413,7 @@ static FcBristle stuck_at(const Stuck* of, double t) {
 static double margin_of_stuck(const Stuck* of, double k, double phase) {
     const double t = fc_min(fc_max(0.0, k + phase), of->block->of->count) * of->block->period;
     *of->block->evaluations += 1.0;
-    return fc_bound(&of->plane, 0, t).D - fc_size(stuck_at(of, t));
+    return fc_bound(&of->plane, FC_FREE, t).D - fc_size(stuck_at(of, t));
 }
 
 // The least margin of period k: that at the vertex of a parabola through three times.

@@ -64,7 +64,7 @@ static double largest_free_start_of(PeriodicSearch* search, int side) {
     const FcMap* map = &search->free_map;
     FcPlane plane;
     fc_plane_make(&plane, search->scene);
-    const double farthest = side * fc_bound(&plane, 0, 0.0).D;
+    const double farthest = side * fc_bound(&plane, FC_FREE, 0.0).D;
     FcStepResult end = {.delta = farthest, .evaluations = search->total.evaluations};
     // With static friction the bound that is met is the one without the drop.
     const bool drops = fc_has_static_friction(search->scene->friction);
@@ -132,7 +132,7 @@ static double free_periods_by_steps(PeriodicSearch* search, double left) {
                                search->free_map_across.offset - map.relaxation * search->total.delta_y);
     FcPlane plane;
     fc_plane_make(&plane, search->scene);
-    const double rounding = ROUNDING_OF_EDGE * fc_bound(&plane, 0, 0.0).D;
+    const double rounding = ROUNDING_OF_EDGE * fc_bound(&plane, FC_FREE, 0.0).D;
     if (map.relaxation == 0.0 ? moved == 0.0 : moved <= rounding) {
         return map.relaxation > 0.0 && meets_after(search, 0.0) ? 0.0 : left;
     }
