@@ -24,6 +24,9 @@ bool fc_scene_is_to_be_checked(const FcScene* scene);
 // A stiffness at the separation d [m] and the modulus E [Pa] beyond the largest number.
 bool fc_fail_stiffness(FcMessage* message, double d, double E);
 
+// A motion that is not finite.
+bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* message);
+
 // The faster of the two velocities, along and transverse, for a message: its input, and the amplitude of its vibration.
 typedef struct {
     const char* name;

@@ -349,7 +349,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     const FcScene scene = fc_friction_contact_scene_moving(&fresh, NULL);
     const double within = (1.0 + FC_ROUNDING_OF_BOUND) * fc_size(fc_project_onto_bound(&scene, first));
     const bool is_within = fc_is_bounded(&v->friction) && fc_size(first) <= within;
-    state->bristle.past = is_within ? fc_past(&scene) : (FcPast){.sigma = 0.0}; // an error_ratio becomes heat
+    state->bristle.past = is_within ? fc_past(&scene) : (FcPast){.sigma = 0.0}; // an excess becomes heat
     if (v->solver.evaluations > FC_MAX_EVALUATIONS) {
         return fc_message_set(
             message,

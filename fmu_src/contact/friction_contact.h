@@ -171,9 +171,6 @@ FcVector fc_friction_contact_force_rate(FcFrictionContact* contact);
 // Recomputes the rates of the states, der, for the present outputs and any law of friction.
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message);
 
-// False with *message filled for a motion that is not finite.
-bool fc_fail_motion(const FcScene* scene, const FcVariables* v, FcMessage* message);
-
 // Whether the vibration is on and a step of h [s] exceeds half a period. F_t is then one sample, and F_t_mean
 // is the output to use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/checks.h"
 #include "model/extremes.h"
 #include "model/pi.h"
 #include "model/plane.h"
@@ -16,7 +17,7 @@ static const double NEAR_THE_BOUND = 0.9;
 
 // The shortest time that determines an input's speed, over the time itself. Rounding leaves the speed four
 // digits; half of it doubles the error of the speed.
-static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
+static const double SHORTEST_SAMPLE = 1e4 * DBL_EPSILON;
 
 // Parts of a vibration period, or changes of V over V_S in Stribeck's peak, within which a push turns at most
 // once. A slip between two turns within a part is below 1e-3 of the vibration's amplitude. Twice the part
@@ -35,7 +36,7 @@ static const double LONGEST_AHEAD = 1.0 / 3.0;
 // missed.
 static const double SLANT = -0.5463024898437905;
 
-// The part of a period by which a time event is later than its turn. Chosen empirically: the indicators sample_inputs
+// The part of a period by which a time event is later than its turn. Chosen empirically: the indicators see
 // the turn first, and an event at a turn does not cause a second event. Half of it does the same.
 static const double AFTER_TURN = 1e-9;
 
@@ -81,7 +82,7 @@ static FcBristleState state_of(const FcFrictionContact* contact) {
 static bool find_speeds(FcFrictionContact* contact, double speed[FC_INPUT_COUNT]) {
     const FcOdeState* ode = &contact->state.ode;
     const double passed = contact->state.clock.time - ode->seen_time;
-    const bool is_long = passed > SHORTEST_LOOK * fabs(contact->state.clock.time);
+    const bool is_long = passed > SHORTEST_SAMPLE * fabs(contact->state.clock.time);
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
         const double input = *fc_input_of(&contact->state.variables, (FcInput)i);
         const double now = is_long ? (input - ode->seen[i]) / passed : ode->speed[i];
@@ -90,7 +91,7 @@ static bool find_speeds(FcFrictionContact* contact, double speed[FC_INPUT_COUNT]
     return is_long;
 }
 
-static void see_inputs(FcFrictionContact* contact) {
+static void sample_inputs(FcFrictionContact* contact) {
     FcOdeState* ode = &contact->state.ode;
     ode->seen_time = contact->state.clock.time;
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
@@ -106,7 +107,7 @@ typedef struct {
     int side; // of the bound that ends its state: 0 for either
 } BoundView;
 
-static void update_x(FcFrictionContact* contact, BoundView* view) {
+static void make_view(FcFrictionContact* contact, BoundView* view) {
     double speed[FC_INPUT_COUNT];
     find_speeds(contact, speed);
     view->scene = fc_friction_contact_scene_moving(contact, speed);
@@ -137,7 +138,7 @@ bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_C
     }
     const FcVariables* v = &contact->state.variables;
     BoundView now;
-    update_x(contact, &now);
+    make_view(contact, &now);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     z[0] = z[1] = z[2] = z[3] = 1.0;
     if (fc_scene_depends_on_d(&now.scene)) {
@@ -162,9 +163,9 @@ bool fc_ode_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_C
     return true;
 }
 
-static void look_at_inputs(FcFrictionContact* contact) {
+static void update_speeds(FcFrictionContact* contact) {
     if (find_speeds(contact, contact->state.ode.speed)) {
-        see_inputs(contact);
+        sample_inputs(contact);
     }
 }
 
@@ -182,7 +183,7 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
         return false;
     }
     BoundView now;
-    update_x(contact, &now);
+    make_view(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
     const double D = fc_scene_is_separated(&now.scene) ? 0.0 : fc_bound(&now.plane, now.state, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
@@ -194,7 +195,7 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
 
 // The rates do not contain the motion of the bound by the inputs, so delta lags behind it. Q_f lags by the
 // integral of the bristle's force over that lag, here by the trapezoidal rule from step to step.
-static void look_at_lag(FcFrictionContact* contact) {
+static void update_lag(FcFrictionContact* contact) {
     FcOdeState* ode = &contact->state.ode;
     Slip slip;
     if (slips_along(contact, &slip)) {
@@ -208,8 +209,8 @@ static void look_at_lag(FcFrictionContact* contact) {
 }
 
 bool fc_ode_step_completed(FcFrictionContact* contact) {
-    look_at_inputs(contact);
-    look_at_lag(contact);
+    update_speeds(contact);
+    update_lag(contact);
     double z[FC_EVENT_INDICATOR_COUNT];
     FcMessage ignored;
     return fc_ode_indicators(contact, z, &ignored) && (z[1] <= 0.0 || z[2] <= 0.0 || z[3] <= 0.0);
@@ -233,15 +234,13 @@ static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
 static void begin_state(FcFrictionContact* contact) {
     FcFrictionState* state = &contact->state;
     BoundView now;
-    update_x(contact, &now);
+    make_view(contact, &now);
     double heat;
     const FcBristle before = fc_friction_contact_bristle(contact);
-    FcBristle bristle = fc_input_jump(&now.scene, state->clock.time, &state->bristle.past, &before, &heat);
-    if (bristle.state != FC_FREE && !(fc_push(&now.scene, bristle) > 0.0)) { // the event of a push of 0
-        bristle.state = FC_FREE;
-    }
+    const FcBristle bristle =
+        fc_input_jump(&now.scene, state->clock.time, &state->bristle.past, &before, &heat);
     move_to(contact, fc_delta(bristle), heat);
-    state->bristle.state = (int)fc_bristle_state(&now.scene, bristle);
+    state->bristle.state = (int)fc_bristle_state_at_event(&now.scene, bristle);
     state->bristle.past = fc_past(&now.scene);
     Slip slip;
     if (slips_along(contact, &slip)) { // it is there, apart from rounding
@@ -263,8 +262,8 @@ static void add_drop(FcFrictionContact* contact, FcVector before) {
 }
 
 void fc_ode_event_begins(FcFrictionContact* contact) {
-    look_at_inputs(contact);
-    look_at_lag(contact);
+    update_speeds(contact);
+    update_lag(contact);
     FcOdeState* ode = &contact->state.ode;
     const FcVariables* v = &contact->state.variables;
     Slip slip;
@@ -364,7 +363,7 @@ static double time_to_turn(const BoundView* view, double delta, double period, d
 
 bool fc_ode_next_event(FcFrictionContact* contact, double* time) {
     BoundView now;
-    update_x(contact, &now);
+    make_view(contact, &now);
     if (!fc_drive_vibrates(&now.scene.drive)) {
         return false;
     }
@@ -380,8 +379,8 @@ bool fc_ode_next_event(FcFrictionContact* contact, double* time) {
 }
 
 void fc_ode_event_ends(FcFrictionContact* contact) {
-    see_inputs(contact);
-    look_at_lag(contact);
+    sample_inputs(contact);
+    update_lag(contact);
     contact->state.ode.lag_heat = 0.0; // its start
 }
 

@@ -1,4 +1,5 @@
-// The state machine of an instance, which FMI function may be called in which state: the tables of sections 3.2.3 and 4.2.4 of FMI 2.0.
+// The state machine of an instance, which FMI function may be called in which state: the tables of sections 3.2.3 and 4.2.4 of
+// FMI 2.0.
 //
 //                                                  .-> FC_STEP_COMPLETE <-> fmi2DoStep ----------------.
 //     fmi2Instantiate -> INSTANTIATED -> INITIALIZATION_MODE                                   -> TERMINATED

@@ -4,8 +4,25 @@
 #include <string.h>
 
 #include "contact/settled_force.h"
+#include "fmi2/log.h"
 #include "model/extremes.h"
 #include "model/motion.h"
+
+const FcVariableInfo* fc_expect_variable(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
+                                         FcCausality causality) {
+    if (vr >= fc_variables_count) {
+        fc_refuse(instance, call, "value reference %u is unknown; the largest is %u", vr,
+                  fc_variables_count - 1);
+        return NULL;
+    }
+    const FcVariableInfo* info = &fc_variables[vr];
+    if (info->causality != causality) {
+        fc_refuse(instance, call, "%s (value reference %u) is not an %s", info->name, vr,
+                  causality == FC_CAUSALITY_INPUT ? "input" : "output");
+        return NULL;
+    }
+    return info;
+}
 
 bool fc_has_sensitivity(const FcVariableInfo* info) {
     return info->causality == FC_CAUSALITY_INPUT || info->causality == FC_CAUSALITY_INDEPENDENT ||

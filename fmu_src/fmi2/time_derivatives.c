@@ -6,22 +6,6 @@
 #include "fmi2/sensitivity.h"
 #include "fmi2/variables.h"
 
-const FcVariableInfo* fc_expect_variable(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
-                                         FcCausality causality) {
-    if (vr >= fc_variables_count) {
-        fc_refuse(instance, call, "value reference %u is unknown; the largest is %u", vr,
-                  fc_variables_count - 1);
-        return NULL;
-    }
-    const FcVariableInfo* info = &fc_variables[vr];
-    if (info->causality != causality) {
-        fc_refuse(instance, call, "%s (value reference %u) is not an %s", info->name, vr,
-                  causality == FC_CAUSALITY_INPUT ? "input" : "output");
-        return NULL;
-    }
-    return info;
-}
-
 // Whether the arrays exist and name time derivatives of order 1 of variables of the causality. Logs the
 // reason if not.
 static bool asks_for_rates(const FcInstance* instance, FcCall call, FcCausality causality,

@@ -2,12 +2,11 @@
 
 #include <math.h>
 
-static FcVector direction(FcVector a) { return fc_direction(a, (FcVector){0.0, 0.0}); }
-
 // The direction in which a bristle slips, or else that of its deflection.
 static FcVector direction_of_slip(const FcScene* scene, FcBristle bristle) {
-    return bristle.state != FC_FREE && !fc_is_planar(scene, bristle) ? (FcVector){fc_side(bristle), 0.0}
-                                                                     : direction(fc_delta(bristle));
+    return bristle.state != FC_FREE && !fc_is_planar(scene, bristle)
+               ? (FcVector){fc_side(bristle), 0.0}
+               : fc_direction_or_zero(fc_delta(bristle));
 }
 
 void fc_at_bound(FcAtBound* of, const FcScene* scene, FcBristle bristle) {
@@ -16,6 +15,10 @@ void fc_at_bound(FcAtBound* of, const FcScene* scene, FcBristle bristle) {
     of->at = fc_plane_coefficients(&of->plane, 0.0, phase);
     of->bound = fc_plane_bound(&of->plane, &of->at, bristle.state, 0.0, phase);
     of->n = direction_of_slip(scene, bristle);
+}
+
+static bool is_on_bound(const FcAtBound* of, FcBristle bristle) {
+    return fc_product(of->n, fc_delta(bristle)) >= (1.0 - FC_INSIDE_BOUND) * of->bound.D;
 }
 
 static double push(const FcAtBound* of) { return fc_plane_push(&of->plane, &of->at, &of->bound, of->n); }
@@ -27,7 +30,7 @@ double fc_push(const FcScene* scene, FcBristle bristle) {
 }
 
 static FcBristle moved_onto(const FcAtBound* of, FcBristle bristle) {
-    const FcVector n = direction(fc_delta(bristle));
+    const FcVector n = fc_direction_or_zero(fc_delta(bristle));
     bristle.delta = of->bound.D * n.x;
     bristle.delta_y = of->bound.D * n.y;
     return bristle;
@@ -53,12 +56,10 @@ FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle) {
     }
     // A bristle with a push of 0 remains slipping. Its motion decides whether it sticks.
     if (bristle.state != FC_FREE) {
-        const bool on_bound = fc_size(bristle) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
-        const bool catches_up = fc_has_broken_away(scene->friction, bristle.state) && !on_bound;
-        bristle.state = push(&of) < 0.0 ? FC_FREE
-                        : catches_up    ? FC_CATCHING_UP
-                        : on_bound      ? FC_SLIPPING
-                                        : FC_FREE;
+        bristle.state = push(&of) < 0.0                                      ? FC_FREE
+                        : is_on_bound(&of, bristle)                          ? FC_SLIPPING
+                        : fc_has_broken_away(scene->friction, bristle.state) ? FC_CATCHING_UP
+                                                                             : FC_FREE;
     }
     return bristle;
 }
@@ -77,8 +78,16 @@ FcBristleState fc_bristle_state(const FcScene* scene, FcBristle bristle) {
     }
     FcAtBound of;
     fc_at_bound(&of, scene, bristle);
-    const bool on_bound = fc_product(of.n, fc_delta(bristle)) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
-    return on_bound && push(&of) > 0.0 ? FC_SLIPPING : has_broken_away ? FC_CATCHING_UP : FC_FREE;
+    return is_on_bound(&of, bristle) && push(&of) > 0.0 ? FC_SLIPPING
+           : has_broken_away                            ? FC_CATCHING_UP
+                                                        : FC_FREE;
+}
+
+FcBristleState fc_bristle_state_at_event(const FcScene* scene, FcBristle bristle) {
+    if (bristle.state != FC_FREE && !(fc_push(scene, bristle) > 0.0)) {
+        return fc_bristle_state(scene, (FcBristle){.delta = bristle.delta, .delta_y = bristle.delta_y});
+    }
+    return fc_bristle_state(scene, bristle);
 }
 
 // The hysteresis of an event, over the bound and over the velocities: far above rounding, far below the

@@ -44,7 +44,8 @@ FcBristle fc_project_onto_bound(const FcScene* scene, FcBristle bristle);
 // the bound at its end is known to fewer digits from its start.
 FcBristle fc_scale_onto_bound(const FcScene* scene, FcBristle bristle);
 
-// The heat of break-away [J], of a drop from |delta| = size [m] to the bound D [m], at the stiffness sigma [N/m]: the elastic energy that goes.
+// The heat of break-away [J], of a drop from |delta| = size [m] to the bound D [m], at the stiffness sigma [N/m]: the elastic
+// energy that goes.
 static inline double fc_drop_heat(double sigma, double size, double D) {
     return 0.5 * sigma * (size - D) * (size + D);
 }
@@ -52,6 +53,9 @@ static inline double fc_drop_heat(double sigma, double size, double D) {
 // The state of a bristle that is within its bound: it slips if it lies on the bound and is pushed. With static friction it has
 // broken away before.
 FcBristleState fc_bristle_state(const FcScene* scene, FcBristle bristle);
+
+// The same at an event, at which a push of 0 has ended a slip.
+FcBristleState fc_bristle_state_at_event(const FcScene* scene, FcBristle bristle);
 
 // The indicators of the events that end a state at the start of a scene, above 0 before the event: z[0] a bristle meets its
 // bound, z[1] a bristle that slips or catches up is no longer pushed. 1 if there is no such event.

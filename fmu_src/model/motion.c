@@ -7,8 +7,6 @@
 
 static FcVector times(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
 
-static FcVector direction(FcVector a) { return fc_direction(a, (FcVector){0.0, 0.0}); }
-
 // The part of a that is perpendicular to n, |n| = 1.
 static FcVector perpendicular(FcVector a, FcVector n) { return fc_plus(a, -fc_product(a, n), n); }
 
@@ -111,7 +109,7 @@ static double log_curve_along(const FcFriction* friction, FcVector V, const FcDi
         return 0.0;
     }
     const double speed = hypot(V.x, V.y);
-    const double speed_along = fc_product((FcVector){along->V, along->V_y}, direction(V));
+    const double speed_along = fc_product((FcVector){along->V, along->V_y}, fc_direction_or_zero(V));
     const double ratio = speed / friction->V_S;
     const double by_speed = fc_stribeck_slope(friction, speed) * (speed_along - ratio * along->V_S);
     return (by_speed + exp(-ratio * ratio) * along->staticRatio) / fc_stribeck(friction, speed);
@@ -155,7 +153,7 @@ static Parts free_along(const FcAtBound* of, FcBristle bristle, double log_sigma
     const FcPlaneCoefficients* at = &of->at;
     const FcFriction* friction = of->plane.scene->friction;
     const FcVector V_along = {along->V, along->V_y};
-    const FcVector direction_of_V = direction(at->V);
+    const FcVector direction_of_V = fc_direction_or_zero(at->V);
     if (!fc_has_bristle(friction)) {
         FcVector turning = {0.0, 0.0};
         if (V_along.x != 0.0 || V_along.y != 0.0) { // at rest the force jumps: not a number

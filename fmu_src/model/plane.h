@@ -27,6 +27,8 @@ static inline FcVector fc_direction(FcVector a, FcVector otherwise) {
     const double size = hypot(a.x, a.y);
     return size > 0.0 ? (FcVector){a.x / size, a.y / size} : otherwise;
 }
+// a / |a|; 0 if a is 0.
+static inline FcVector fc_direction_or_zero(FcVector a) { return fc_direction(a, (FcVector){0.0, 0.0}); }
 // |a| |b| times the sine of the angle from a to b.
 static inline double fc_across(FcVector a, FcVector b) { return a.x * b.y - a.y * b.x; }
 

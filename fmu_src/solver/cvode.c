@@ -374,10 +374,7 @@ static void begin_state(FcCvode* solver, double t, FcStepResult* now) {
         }
     }
     fc_project_result(&scene, now);
-    if (!(fc_push(&scene, fc_bristle_of(now)) > 0.0)) { // at the event of a push of 0
-        now->state = FC_FREE;
-    }
-    now->state = solver->state = fc_bristle_state(&scene, fc_bristle_of(now));
+    now->state = solver->state = fc_bristle_state_at_event(&scene, fc_bristle_of(now));
     put(solver, now);
 }
 

@@ -1,10 +1,5 @@
 // Event location for a bounded bristle: where it meets its bound, where its slip ends, and what happens there.
-//
-//     stuck or relaxing  --meets D, and is pushed (with static friction it drops to the kinetic bound)-->  slipping
-//     slipping           --the push has fallen to 0-->                                                     stuck or relaxing
-//     slipping inside its bound, after a jump  --the push is negative-->                                   stuck
-//
-// The push is the velocity at which the bristle would leave its bound outwards (model/bound.h). The polynomial through a
+// The transitions are those of model/bound.h. The polynomial through a
 // panel's points finds an event and places it; the meeting of a stuck bristle is placed by its exact motion.
 #ifndef FC_SOLVER_INTEGRATE_EVENTS_H
 #define FC_SOLVER_INTEGRATE_EVENTS_H

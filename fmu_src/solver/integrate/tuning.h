@@ -1,5 +1,5 @@
-// The constants of the march, of the periods and of a mass that are chosen and not derived: each with its meaning, and the width of its
-// plateau, that is the range over which neither the misses of the hunt nor the evaluations change.
+// The constants of the march, of the periods and of a mass that are chosen and not derived: each with its meaning, and the
+// width of its plateau, that is the range over which neither the misses of the hunt nor the evaluations change.
 //
 // tools.constants.plateaus measures the evaluations and the worst error of the scenes of the benchmarks at half and
 // twice of each; "0.99, 1.02" is what half and twice of it cost in evaluations. The tolerance, times the largest force of the
