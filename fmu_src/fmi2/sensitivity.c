@@ -76,14 +76,16 @@ static FcVector reached_after(const FcFrictionContact* contact, const FcVariable
 static FcVector reached_by(const FcFrictionContact* contact, const FcVariableInfo* info) {
     const FcVariables* now = &contact->state.variables;
     double change = small_change(contact, info, MOVED_PART);
+    if (change == 0.0) {
+        return (FcVector){0.0, 0.0};
+    }
     FcVector near = reached_after(contact, info, change);
     if (near.x == now->delta && near.y == now->delta_y) {
         change = -change;
+        if (!fc_variable_allows(info, fc_variable_value(now, info) + 2.0 * change)) {
+            return (FcVector){0.0, 0.0};
+        }
         near = reached_after(contact, info, change);
-    }
-    const double end = fc_variable_value(now, info) + 2.0 * change;
-    if (change == 0.0 || (change < 0.0 && !fc_variable_allows(info, end))) {
-        return (FcVector){0.0, 0.0};
     }
     const FcVector here = reached_after(contact, info, 0.0);
     const FcVector far = reached_after(contact, info, 2.0 * change);
