@@ -76,7 +76,7 @@ static void scene_from(FcFrictionContact* contact, double start, double rest,
     fc_drive_start(drive, start, rest);
     fc_scene_make(scene, &v->contact, contact_at(contact, drive->E.value), &v->friction, v->F_C);
     if (!is_used && !(has_E && has_contact(scene))) {
-        scene->drive.d.value = 1.0;
+        scene->drive.d.value = 1.0 + drive->vibration.a_d; // apart at any phase
         scene->is_open = true;
     }
 }
@@ -332,6 +332,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     state->rest.W_f = 0.0;
     state->rest.Q_f = 0.0;
     memcpy(state->rates.last, HELD, sizeof state->rates.last);
+    memset(&state->bristle, 0, sizeof state->bristle); // what an earlier start has left is no past
     state->ode = (FcOdeState){0};
     FcVariables* v = &state->variables;
     v->body.v = v->body.m > 0.0 ? v->body.v_0 : 0.0;

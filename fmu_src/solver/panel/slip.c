@@ -95,7 +95,7 @@ typedef struct {
 // Integrates the force, the work, the heat and the drag over the panel, and sets the deflection and the push at its points.
 // `push` [m/s] is that at the panel's start.
 static void integrate(const FcPlane* plane, const FcNodes* nodes, double push, Slip* slip, FcPanel* panel) {
-    assert(push > 0.0);
+    assert(!(push <= 0.0));
     FcMap* map = &panel->along;
     *map = panel->across = (FcMap){.relaxation = 1.0};
     panel->z = 0.0;
@@ -157,7 +157,7 @@ static void estimate_errors(const FcPlane* plane, const FcNodes* nodes, double s
 // In four steps: the bound at the points; the direction of the deflection there; the integrals, whose heat is the work less
 // the change of the stored energy; the errors, which are 0 along a line with a constant limit.
 bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcPanelStart* from, FcPanel* panel) {
-    assert(from->push > 0.0 && (!plane->is_one_dimensional || from->delta.y == 0.0));
+    assert(!(from->push <= 0.0) && (!plane->is_one_dimensional || from->delta.y == 0.0));
     Slip slip;
     for (int i = 0; i < POINTS; i++) {
         slip.at[i] = fc_nodes_at(nodes, i);
