@@ -104,12 +104,19 @@ static inline bool fc_is_bounded(const FcFriction* friction) {
 // of it e^-6 would remain.
 #define FC_END_OF_PEAK 5.0
 
+// The shape of the curve at the velocity V [m/s]: ln of (s(V) - 1) / (s(0) - 1).
+static inline double fc_stribeck_log_peak(const FcFriction* friction, double V) {
+    const double ratio = V / friction->V_S;
+    return -ratio * ratio;
+}
+
 // Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a
 // Stribeck curve.
 static inline double fc_stribeck(const FcFriction* friction, double V) {
-    const double ratio = V / friction->V_S;
     assert(!fc_has_stribeck_curve(friction) || friction->staticRatio >= 1.0);
-    return fc_has_stribeck_curve(friction) ? 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio) : 1.0;
+    return fc_has_stribeck_curve(friction)
+               ? 1.0 + (friction->staticRatio - 1.0) * exp(fc_stribeck_log_peak(friction, V))
+               : 1.0;
 }
 
 static inline double fc_stribeck_slope(const FcFriction* friction, double V) {

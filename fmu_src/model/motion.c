@@ -112,7 +112,8 @@ static double log_curve_along(const FcFriction* friction, FcVector V, const FcDi
     const double speed_along = fc_product((FcVector){along->V, along->V_y}, fc_direction_or_zero(V));
     const double ratio = speed / friction->V_S;
     const double by_speed = fc_stribeck_slope(friction, speed) * (speed_along - ratio * along->V_S);
-    return (by_speed + exp(-ratio * ratio) * along->staticRatio) / fc_stribeck(friction, speed);
+    return (by_speed + exp(fc_stribeck_log_peak(friction, speed)) * along->staticRatio) /
+           fc_stribeck(friction, speed);
 }
 
 // The derivative of ln g, or of the limit of the bound: by the parameter of the limit, the normal force and the Stribeck

@@ -52,20 +52,22 @@ static bool drops(const Ramp* ramp) {
 
 // Static over Coulomb friction, or Stribeck's curve of a bristle that slips, and the rate of its logarithm.
 static double curve_at(const Ramp* ramp, double s, double* log_rate) {
-    const double ratio = ramp->past.ratio * exp(s * ramp->log_ratio);
+    const double ratio =
+        fc_max(1.0, ramp->past.ratio * exp(s * ramp->log_ratio)); // 1 may be rounded below it
     *log_rate = ramp->log_ratio;
     if (!drops(ramp) || !ramp->slips) {
         return ratio;
     }
-    const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
-    const double x = (ramp->past.V + s * ramp->V) / V_S;
-    const double y = (ramp->past.V_y + s * ramp->V_y) / V_S;
-    const double peak = exp(-x * x - y * y);
-    const double curve = 1.0 + (ratio - 1.0) * peak;
-    const double along = x * (ramp->V / V_S - x * ramp->log_V_S);
-    const double across = y * (ramp->V_y / V_S - y * ramp->log_V_S);
-    *log_rate = peak / curve * (ratio * ramp->log_ratio - 2.0 * (ratio - 1.0) * (along + across));
-    return curve;
+    FcFriction at = *ramp->scene->friction;
+    at.staticRatio = ratio;
+    at.V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
+    const FcVector V = {ramp->past.V + s * ramp->V, ramp->past.V_y + s * ramp->V_y};
+    const double speed = hypot(V.x, V.y);
+    const double speed_rate = fc_product(fc_direction_or_zero(V), (FcVector){ramp->V, ramp->V_y});
+    const double by_ratio = exp(fc_stribeck_log_peak(&at, speed)) * ratio * ramp->log_ratio;
+    const double by_speed = fc_stribeck_slope(&at, speed) * (speed_rate - speed * ramp->log_V_S);
+    *log_rate = (by_ratio + by_speed) / fc_stribeck(&at, speed);
+    return fc_stribeck(&at, speed);
 }
 
 static Place at_place(const Ramp* ramp, double s) {

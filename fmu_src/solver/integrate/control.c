@@ -111,8 +111,8 @@ static double part_not_smooth(const FcControl* control, const FcPosition* at, Fc
         part = behind > 0.0 ? fc_max(lag, rough_exp(fc_min(0.0, behind - control->log_force))) : lag;
     }
     if (fc_has_stribeck_curve(friction) && kind != FC_STICKS) {
-        const double V = fc_min(at->rate / at->per_path, V_end) / friction->V_S;
-        part = fc_max(part, (friction->staticRatio - 1.0) * rough_exp(-V * V));
+        const double V = fc_min(at->rate / at->per_path, V_end);
+        part = fc_max(part, (friction->staticRatio - 1.0) * rough_exp(fc_stribeck_log_peak(friction, V)));
     }
     return fc_min(1.0, part);
 }
@@ -194,9 +194,8 @@ double fc_control_error_ratio(const FcControl* control, const FcPart* part, cons
     // Heat is the force times the way and the change of the deflection: in a curve, whose coefficients fall late, a short panel
     // of a relaxing bristle may err by a part of its change alone.
     const FcFriction* friction = interval->scene->friction;
-    const double V = fc_min(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
-    const bool in_curve = fc_may_relax(friction) && fc_has_stribeck_curve(friction) &&
-                          (friction->staticRatio - 1.0) * exp(-V * V) > interval->tolerance;
+    const double V = fc_min(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1]));
+    const bool in_curve = fc_may_relax(friction) && fc_stribeck(friction, V) - 1.0 > interval->tolerance;
     const double path = interval->speed * interval->duration / interval->saturation;
     const double whole = allowed * (in_curve ? fc_min(1.0, fc_max(panel->z, path)) : 1.0);
     *of_end = FC_SAFETY * end_error / fc_max(FC_SHARE_OF_END * whole, rounding);

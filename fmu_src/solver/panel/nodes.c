@@ -257,10 +257,10 @@ void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h,
     const FcFriction* friction = plane->scene->friction;
     if (fc_has_stribeck_curve(friction)) {
         const double R = friction->staticRatio;
-        const double farthest = 26.0 * friction->V_S; // e^-676 of the curve
+        const double least = -676.0; // a peak below e^-676 is 0 in all digits
         for (int i = 0; i < POINTS; i++) {
-            const double V = (nodes->speed[i] > farthest ? farthest : nodes->speed[i]) / friction->V_S;
-            nodes->limit[i] *= (1.0 + (R - 1.0) * fc_exp_less(-V * V, 0.0)) / R;
+            const double log_peak = fc_stribeck_log_peak(friction, nodes->speed[i]);
+            nodes->limit[i] *= (1.0 + (R - 1.0) * fc_exp_less(log_peak > least ? log_peak : least, 0.0)) / R;
         }
     }
 }
