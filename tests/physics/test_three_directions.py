@@ -113,4 +113,4 @@ def test_the_force_at_which_a_vibrated_contact_breaks_away(
     above = one(fmu, 0.0, start | {"delta_0": 1.001 * bound * deflection})
     assert below == pytest.approx(0.999 * bound, rel=1e-5)
     assert above < 1.0005 * bound  # it has slipped
-    assert "With R > 1 it breaks away at R - κ and √(R² - κ²)" in PAGE
+    assert "With R > 1 the contact breaks away at R - κ and √(R² - κ²)" in PAGE
