@@ -12,16 +12,13 @@ from tools.bench import machine
 from tools.project import ROOT
 
 PAGE = (ROOT / "docs" / "machine.md").read_text(encoding="utf-8")
-ROW = re.compile(r"^\| (.+) \| `\w+` \| [\d.]+ \| ([\d.]+) % \|$", re.MULTILINE)
+ROW = re.compile(r"^\| (.+), .+ \| (on|off) \| `\w+` \| [\d.]+ \| ([\d.]+) % \|$", re.MULTILINE)
 
 
 def said(vibrates: bool, master: str) -> list[float]:
-    """The errors [%] of a master's rows; *the same* goes on with the one above."""
-    found, above = [], ""
-    for name, error in ROW.findall(PAGE.split("**Vibration on**")[vibrates]):
-        above = above if name.startswith("the same") else name.rpartition(", ")[0]
-        found += [float(error)] if above == master else []
-    return found
+    """The errors [%] of a master's rows."""
+    wanted = (master, "on" if vibrates else "off")
+    return [float(error) for *row, error in ROW.findall(PAGE) if tuple(row) == wanted]
 
 
 @pytest.mark.parametrize("vibrates", [False, True])

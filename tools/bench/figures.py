@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
 
 from frictioncontact import style
+from frictioncontact.advice.stuck_mass import GAUSS_SEIDEL
 from tools.bench.coupling import Belt, Trajectory
 from tools.bench.exchange import MODEL_EXCHANGE
 
@@ -26,6 +27,7 @@ MASS_METHODS = {  # of a mass: label and colour
     "collocation": ("panels", style.BLUE),
     "cvode": ("CVODE in the FMU", style.GREEN),
     MODEL_EXCHANGE: ("scipy's BDF, model exchange", style.ORANGE),
+    GAUSS_SEIDEL: ("mass in a Gauss-Seidel master", style.BLACK),
 }
 BEHAVIOUR = {
     "monotone": style.BLUE,
@@ -79,13 +81,15 @@ def mass_work(points: Sequence[Any], titles: Mapping[str, str], path: Path) -> N
             own = table[(table.case == name) & (table.method == method)]
             errors = own[["error_F_t", "error_F_t_mean"]].max(axis=1).clip(SMALLEST_ERROR)
             panel.loglog(errors, own.cpu, "o-", color=colour, ms=3, label=label)
+            if method == GAUSS_SEIDEL:  # its longest step
+                panel.loglog(errors.iloc[0], own.cpu.iloc[0], "x", color=colour, ms=9, mew=1.8)
         panel.set(xlim=(3.0, SMALLEST_ERROR / 3), xticks=[1.0, 1e-4, 1e-8, 1e-12, 1e-16])
         panel.set_title(title.replace(", ", "\n", 1))
     for panel in axes[-1]:
         panel.set_xlabel(r"error of $F_t$ and its mean, over $F_C$")
     style.note(axes.flat[0], "real time", 0.72, 0.6)
     figure.supylabel("CPU time over simulated time", fontsize=10)
-    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     style.save(figure, path)
 
 

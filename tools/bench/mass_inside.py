@@ -55,7 +55,6 @@ class Pulled:
 ROWS = (
     Pulled("ElasticPlastic", 6e6, 1.0),
     Pulled("ElasticPlastic", 6e10, 1.0),
-    Pulled("ElasticPlastic", 6e6, 30.0),
     Pulled("Dahl", 6e6, 1.0, vibrates=True),
     Pulled("Dahl", 6e4, 0.1, vibrates=True),
     Pulled("Dahl", 6e6, 0.01, vibrates=True),

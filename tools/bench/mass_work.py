@@ -5,7 +5,8 @@
     m v' = body.F - F_t
 
 The FMU solves it by its panels (solver.method = collocation) and by CVODE (solver.method = cvode), both
-driven from C. Beside them stands BDF of scipy on model exchange, with v as the state of a host in Python.
+driven from C. Beside them stand two hosts in Python that keep v as their own state: BDF of scipy on model
+exchange, and a Gauss-Seidel master whose steps are a step of the scene and whole parts of it.
 Work is CPU time over simulated time: 1 is real time. An error is the larger of those of F_t and F_t_mean,
 over F_C. What is right is hunt/reference.c.
 """
@@ -17,6 +18,7 @@ from itertools import product
 
 import numpy as np
 
+from frictioncontact.advice.stuck_mass import GAUSS_SEIDEL
 from frictioncontact.command import progress_bar
 from frictioncontact.errors import UserError
 from frictioncontact.exchange import ModelExchange
@@ -36,6 +38,7 @@ ROUNDS = 4  # in which all settings take turns; the least time counts
 BUDGET = 0.01  # s of CPU time for one setting in one round
 H = 1e-3  # s
 PANELS, CVODE = "collocation", "cvode"
+PARTS = (1, 10, 100, 1000)  # of a step of the scene, by the master
 STATIC: dict[str, Value] = {"friction.staticRatio": 1.5, "friction.V_S": 0.1}
 VIBRATES: dict[str, Value] = {"vibration.V_1": 1.44}  # at 20 kHz
 
@@ -106,16 +109,40 @@ def exchanged(fmu: FrictionFmu, scene: Case, tolerance: float) -> Outcome:
     return Outcome(F_t, mean, cpu / scene.count, evaluations / scene.count)
 
 
-def solved(bench: Bench, scene: Case, method: str, tolerance: float) -> Outcome:
-    """By the FMU, or by its host on model exchange."""
+def mastered(fmu: FrictionFmu, scene: Case, parts: int) -> Outcome:
+    """The scene by Gauss-Seidel in equal parts of its steps: v by the force over the last part, then the contact."""
+    values = dict(scene.start_values)
+    m, held = float(values.pop("body.m")), float(values.pop("body.F"))
+    count, H = scene.count * parts, scene.step / parts
+    samples = scene.inputs.get("body.F", np.full(scene.count + 1, held))
+    pull = np.interp(np.arange(count) / parts, np.arange(scene.count + 1), samples)
+    v, read = 0.0, np.zeros((count + 1, 2))
+    used = int("vibration.V_1" in values)  # F_t, under a vibration F_t_mean
+    with fmu.session(values) as session:
+        begin = time.process_time()
+        for k, P in enumerate(pull):
+            v += H * (P - read[k, used]) / m
+            session.set("V", v)
+            session.step(H)
+            read[k + 1] = session.read(("F_t", "F_t_mean"))
+        cpu = time.process_time() - begin
+        evaluations = session.get("solver.evaluations")
+    F_t, means = read[1:].reshape(scene.count, parts, 2).transpose(2, 0, 1)
+    return Outcome(F_t[:, -1], means.mean(axis=1), cpu / scene.count, evaluations / scene.count)
+
+
+def solved(bench: Bench, scene: Case, method: str, setting: float) -> Outcome:
+    """By the FMU at a tolerance, by its host on model exchange, or by a master in so many parts of a step."""
     if method == MODEL_EXCHANGE:
-        return exchanged(bench.fmu, scene, tolerance)
-    return bench.run(scene.job(0.0, BUDGET, {"solver.method": method, "solver.tolerance": tolerance}))
+        return exchanged(bench.fmu, scene, setting)
+    if method == GAUSS_SEIDEL:
+        return mastered(bench.fmu, scene, int(setting))
+    return bench.run(scene.job(0.0, BUDGET, {"solver.method": method, "solver.tolerance": setting}))
 
 
-def measure(bench: Bench, scene: Case, methods: Sequence[str], tolerances: Sequence[float]) -> list[Point]:
-    """Each method at each tolerance; cpu of a Point is over simulated time here, the least of ROUNDS."""
-    truth, settings = {0.0: expected(scene, 0.0)}, [*product(methods, tolerances)]
+def measure(bench: Bench, scene: Case, settings: Sequence[tuple[str, float]]) -> list[Point]:
+    """Each method at each setting; cpu of a Point is over simulated time here, the least of ROUNDS."""
+    truth = {0.0: expected(scene, 0.0)}
     rounds = [
         [
             graded(scene, truth, *setting, lambda _, setting=setting: solved(bench, scene, *setting))
@@ -136,10 +163,9 @@ def main() -> None:
     print("| scene | CPU time over simulated time | CVODE over it |", "|---|---|---|", sep="\n")
     with progress_bar() as progress, open_bench(progress) as bench:
         for scene in tabled():
-            print(line(scene, *measure(bench, scene, (PANELS, CVODE), (TOLERANCE_OF_TABLE,))), flush=True)
-        points = [
-            p for scene in drawn() for p in measure(bench, scene, (PANELS, CVODE, MODEL_EXCHANGE), TOLERANCES)
-        ]
+            print(line(scene, *measure(bench, scene, [*product((PANELS, CVODE), (TOLERANCE_OF_TABLE,))])), flush=True)
+        settings = [*product((PANELS, CVODE, MODEL_EXCHANGE), TOLERANCES), *product((GAUSS_SEIDEL,), PARTS)]
+        points = [p for scene in drawn() for p in measure(bench, scene, settings)]
     figures.mass_work(points, {scene.name: scene.title for scene in drawn()}, PICTURE)
 
 
