@@ -78,6 +78,9 @@ static Close event_function(const March* march, Event event, const FcNodes* node
         for (int i = 0; i < POINTS; i++) {
             f[i] = (panel->delta[i] - radius(nodes, i)) * (panel->delta[i] + radius(nodes, i));
         }
+        if (f[START] <= 2.0 * FC_ROUNDING_OF_BOUND * D * D) { // by rounding it may begin beyond
+            f[START] = fc_min(f[START], 0.0);
+        }
         allowed = fc_max(FC_BODY_ROUNDING,
                          (fc_has_static_friction(friction) ? FC_BODY_SHARE_OF_DROP : FC_BODY_SHARE_OF_EVENT) *
                              tolerance);
