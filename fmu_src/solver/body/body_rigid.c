@@ -153,6 +153,13 @@ static double first_fall(double* points, bool* rose) {
         const double before = (k - 1.0) / FC_SAMPLES;
         double place = (double)k / FC_SAMPLES;
         double value = f[k];
+        for (int i = 0; i < FC_STAGES && value > 0.0; i++) { // the points lie closer at the ends
+            const double at = FC_RADAU.node[i] + 0.5;
+            if (at > before && at < place && points[i] <= 0.0) {
+                place = at;
+                value = points[i];
+            }
+        }
         if (value > 0.0 && k < FC_SAMPLES && f[k - 1] > value &&
             f[k + 1] > value) { // it may dip between the samples
             const double rise = f[k + 1] - f[k - 1];
