@@ -22,6 +22,8 @@ bool fc_body_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const F
                   double h, FcBristle from, FcBody* body, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && body->m > 0.0 && options->tolerance > 0.0 && !fc_is_planar(scene, from));
     fc_result_start(result, from, 0.0);
+    const FcBody start = *body;
+    body->x = 0.0;
     FcSegments segments;
     fc_segments_start(&segments, scene, h);
     while (fc_next_segment(&segments)) {
@@ -38,5 +40,8 @@ bool fc_body_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const F
             return false;
         }
     }
+    // v and x are rounded once: over the many segments of a load that falls by decades their rounding would add up.
+    body->v = start.v + (fc_body_pushed(&start, h) - result->impulse) / start.m;
+    body->x += start.x;
     return true;
 }
