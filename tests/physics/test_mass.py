@@ -169,7 +169,7 @@ def test_one_long_step_is_ten_short_ones(fmu: FrictionFmu, law: str) -> None:
         assert short[name][-1] == pytest.approx(long[name][-1], abs=1e-7 * allowed)
 
 
-@pytest.mark.parametrize(("row", "end"), [(0, 0.1), (2, 0.1), (3, 4e-3), (5, 4e-3)])
+@pytest.mark.parametrize(("row", "end"), [(0, 0.1), (1, 0.1), (2, 4e-3), (4, 4e-3)])
 def test_the_master_of_the_page_errs_by_the_forces_that_it_holds(
     fmu: FrictionFmu, row: int, end: float
 ) -> None:
