@@ -27,8 +27,8 @@ defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST = """
     test_scenes test_wheel test_site test_reproducible test_report test_building test_machine test_belt_page
-    test_identify test_fuzz test_types test_sweep_cluster test_sweep test_rigs test_c_units test_importers
-    test_validate test_tolerance test_release_command test_sources test_simulate_many
+    test_identify test_command_lines test_fuzz test_types test_sweep_cluster test_sweep test_rigs test_c_units
+    test_importers test_validate test_tolerance test_release_command test_sources test_simulate_many
 """.split()
 
 

@@ -9,12 +9,13 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pages
 import pytest
 
 from figures.pages import laws, tutorial
 from figures.pages.readme import SCENE
 from frictioncontact import table2
-from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
+from frictioncontact.fmu import OUTPUTS, FrictionError, FrictionFmu, simulate
 from frictioncontact.parameters import (
     COULOMB_FORCE,
     IDENTIFIED,
@@ -27,29 +28,19 @@ from frictioncontact.parameters import (
 from frictioncontact.table2 import percent
 
 ROOT = Path(__file__).resolve().parents[2]
-DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])
 PHYSICS = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
 USING = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
 ROWS = [[cell.strip() for cell in line[1:].split("|")] for line in USING.splitlines() if line[:1] == "|"]
-# And what it prints.
-BLOCK = re.compile(r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
-EXAMPLES = [
-    pytest.param(*block, id=f"{path.name}-{number}")
-    for path in DOCUMENTS
-    if path not in (*tutorial.PAGES, ROOT / "README.md")  # which tests/package/test_wheel.py runs
-    for number, block in enumerate(BLOCK.findall(path.read_text(encoding="utf-8")))
-]
-EXAMPLES += [pytest.param(*tutorial.blocks(page), id=page.stem) for page in tutorial.PAGES]
 
 
 def test_commands_exist() -> None:
-    for document in DOCUMENTS:
+    for document in pages.DOCUMENTS:
         for name in re.findall(r"\bscripts/([a-z-]+)\b(?!/|\.)", document.read_text(encoding="utf-8")):
             assert (ROOT / "scripts" / name).exists(), f"scripts/{name} of {document}"
 
 
-@pytest.mark.parametrize(("code", "shown"), EXAMPLES)
-def test_python_examples_run(
+@pytest.mark.parametrize(("code", "shown"), pages.python(in_wheel=False))
+def test_blocks_that_need_a_clone(
     fmu_path: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -151,3 +142,20 @@ def test_every_variable_is_explained_with_its_unit_and_start(fmu: FrictionFmu) -
             assert float(row[2]) == float(variable.start)
         if variable.causality == "parameter":
             assert row[3] == variable.variability
+
+
+def test_the_log_says_what_the_page_quotes(fmu: FrictionFmu) -> None:
+    chaotic = {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.5, "friction.V_S": 0.22}
+    chaotic |= {"contact.sigma": 5.2e5, "V": 0.036, "vibration.V_1": 0.19, "F_C": 82.0}
+    with fmu.session(chaotic | {"contact.model": "Constant"}) as session:
+        session.get("F_t_settled")
+        (told,) = session.warnings
+    assert told.partition(": ")[2].partition(" so that")[0] in USING
+    with fmu.session() as session:
+        with pytest.raises(FrictionError) as refused:
+            session.set("F_C", -55.0)
+        assert f"\n    {refused.value}\n" in USING
+        session.set("d", 0.0)
+        with pytest.raises(FrictionError) as refused:
+            session.step(1e-3)
+        assert f"\n    {refused.value}\n" in USING

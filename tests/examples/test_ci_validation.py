@@ -41,10 +41,12 @@ def test_passes(fmu_path: Path, tmp_path: Path) -> None:
 def test_fails_when_a_result_leaves_its_band(ended: Ended, capsys: pytest.CaptureFixture[str]) -> None:
     assert ended("--start", "contact.R_q=6.1e-6") == 1
     printed = capsys.readouterr().out.splitlines()
-    assert [line.split(" = ")[0] for line in printed if line.startswith("LEFT")] == [
+    left = [line for line in printed if line.startswith("LEFT")]
+    assert [line.split(" = ")[0] for line in left] == [
         "LEFT contact at rest: sigma",
         "LEFT contact at rest: A_r",
     ]
+    assert f"\n    {left[0]}\n" in Path(validate.__file__).with_name("README.md").read_text(encoding="utf-8")
 
 
 def test_wrong_input_is_one_line(ended: Ended, tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
+import pages
 import pip
 import pytest
 from packaging.requirements import Requirement
@@ -48,6 +49,7 @@ class User:
 
     def __init__(self, folder: Path) -> None:
         self.bin, self.work = folder / "environment" / "bin", folder / "work"
+        self.plot = folder.parent / "plot"  # the packages of that extra
         for path in (folder, self.work):
             path.mkdir(exist_ok=True)
             if NOBODY:
@@ -86,6 +88,7 @@ def user(wheel: Path) -> Iterator[User]:
         shutil.copytree(Path(pip.__file__).parent, folder / "pip" / "pip")
         (packages,) = user.bin.parent.glob("lib/*/site-packages")
         copy_with_all_it_needs("frictioncontact", packages)
+        copy_with_all_it_needs("frictioncontact", user.plot, "plot", packages)
         shutil.copy(wheel, folder)
         install = ("install", "--quiet", "--no-index", "--no-deps", str(folder / wheel.name))
         for words in (install, ("check",)):
@@ -93,19 +96,20 @@ def user(wheel: Path) -> Iterator[User]:
         yield user
 
 
-def copy_with_all_it_needs(name: str, packages: Path) -> None:
-    """What a package requires without extras, and so on, into an environment; not the package itself."""
+def copy_with_all_it_needs(name: str, packages: Path, extra: str = "", beside: Path = Path()) -> None:
+    """What a package requires, and so on, into a folder, unless it is beside; not the package itself."""
+    packages.mkdir(exist_ok=True)
     for requirement in map(Requirement, distribution(name).requires or ()):
         with contextlib.suppress(PackageNotFoundError):  # needed elsewhere, as on Windows
             wanted = distribution(requirement.name)
-            if requirement.marker is None or requirement.marker.evaluate({"extra": ""}):
+            if requirement.marker is None or requirement.marker.evaluate({"extra": extra}):
                 for part in {path.parts[0] for path in wanted.files or ()} - {"..", "__pycache__"}:
                     source, target = Path(wanted.locate_file(part)), packages / part
-                    if source.is_dir() and not target.exists():
+                    if source.is_dir() and not target.exists() and not (beside / part).exists():
                         shutil.copytree(source, target)
                     elif source.is_file():
                         shutil.copy2(source, target)
-                copy_with_all_it_needs(requirement.name, packages)
+                copy_with_all_it_needs(requirement.name, packages, beside=beside)
 
 
 def test_what_is_inside(wheel: Path) -> None:
@@ -123,27 +127,21 @@ def test_what_is_inside(wheel: Path) -> None:
     assert "License-Expression: BSD-3-Clause" in metadata
 
 
-def test_the_lines_of_the_readme(user: User) -> None:
+def test_a_user_has_no_compiler_and_the_first_block_is_short(user: User) -> None:
     assert not [tool for tool in ("cc", "gcc", "clang", "make") if shutil.which(tool, path=str(user.bin))]
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    (code, printed) = re.findall(r"```python\n(.*?)```\n+```text\n(.*?)```", text, re.DOTALL)[0]
-    (user.work / "readme.py").write_text(code, encoding="utf-8")
-    assert user.run("python", "readme.py") == printed
-    assert len(code.splitlines()) <= 10
+    (code, printed), *_ = pages.BLOCK.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    assert printed and len(code.splitlines()) <= 10
 
 
-PAGES = (
-    "README.md",
-    *(f"docs/{name}.md" for name in ("using", "machine", "python", "tools", "api", "measured-parameters")),
-    "examples/friction-law/README.md",
-)
-LINES = [
-    line.strip().replace("\\\n", "")
-    for page in PAGES
-    for line in re.findall(
-        r"^(?: {4})?(frictioncontact (?:.*\\\n)*.*)$", (ROOT / page).read_text("utf-8"), re.MULTILINE
-    )
-]
+@pytest.mark.parametrize(("code", "shown"), pages.python(in_wheel=True))
+def test_blocks_of_python(user: User, code: str, shown: str) -> None:
+    """Without a warning; those that draw, with the extra for pictures."""
+    path = {"PYTHONPATH": str(user.plot), "MPLBACKEND": "agg"} if "matplotlib" in code else {}
+    printed = user.run("python", "-W", "error", "-c", code, **path)
+    assert shown in ("", printed)
+
+
+LINES = [line for line in pages.lines() if line.startswith("frictioncontact ")]
 ALL = """import shlex, sys
 from frictioncontact.__main__ import main
 for line in sys.stdin:
