@@ -105,7 +105,7 @@ def normal(fmu: Path, data: NormalVibration, fits: Sequence[NormalFit]) -> Figur
     axes.semilogx(1e3 * data.V, 100 * data.reduction, "o", color=style.BLACK, label=label)
     at, where = 1e3 * data.between, {"va": "bottom", "transform": axes.transData}
     axes.axvline(at, ymax=0.55, color=style.GREY, lw=0.8)
-    style.note(axes, "measured too,\nnot at hand", 1.03 * at, 2.0, **where)
+    style.note(axes, "measured,\nvalue unknown", 1.03 * at, 2.0, **where)
     axes.set(
         xlabel="sliding velocity [mm/s]",
         ylabel="fall of the friction [%]",

@@ -83,12 +83,12 @@ BOXES = {
 # From, to, where the arrow leaves and arrives (x), its bend, and what it says at (x, y).
 ARROWS = (
     ("open", "free", 0.42, 0.42, 0.0, "closes", (0.40, 0.80), "right"),
-    ("free", "open", 0.58, 0.58, 0.0, "load < 1e-100 N:\nδ is lost (from any)", (0.60, 0.80), "left"),
+    ("free", "open", 0.58, 0.58, 0.0, "opens, from any state:\nδ is lost", (0.60, 0.80), "left"),
     ("free", "slips", 0.42, 0.42, 0.0, "meets D, push > 0\n(drops to the kinetic D)", (0.40, 0.51), "right"),
-    ("slips", "free", 0.58, 0.58, 0.0, "push = 0", (0.60, 0.51), "left"),
+    ("slips", "free", 0.58, 0.58, 0.0, "push ends", (0.60, 0.51), "left"),
     ("slips", "inside", 0.42, 0.42, 0.0, "an input jumps", (0.40, 0.21), "right"),
     ("inside", "slips", 0.58, 0.58, 0.0, "meets D", (0.60, 0.21), "left"),
-    ("inside", "free", 0.80, 0.80, 0.5, "push < 0", (0.945, 0.37), "right"),
+    ("inside", "free", 0.80, 0.80, 0.5, "push ends", (0.945, 0.37), "right"),
 )
 WIDTH, HEIGHT = 0.60, 0.10  # of a box
 
