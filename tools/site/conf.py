@@ -133,7 +133,8 @@ def with_index(page: str) -> str:
     """Each table of variables after entries of the index, so that the search finds a name in its table."""
     parts = re.split(r"^(?=###? )", page, flags=re.MULTILINE)
     for k, part in enumerate(parts):
-        names = re.findall(r"^\| `([\w.()]+)` \|", part, re.MULTILINE)
+        cells = re.findall(r"^\| (`[^|]+`) \|", part, re.MULTILINE)
+        names = re.findall(r"`([\w.()]+)`", " ".join(cells))
         if names and "| meaning |" in part:
             title, _, rest = part.partition("\n")
             entries = "".join(f"   ! single: {name}\n" for name in names)
