@@ -110,7 +110,7 @@ def exchanged(fmu: FrictionFmu, scene: Case, tolerance: float) -> Outcome:
 
 
 def mastered(fmu: FrictionFmu, scene: Case, parts: int) -> Outcome:
-    """The scene by Gauss-Seidel in equal parts of a step: v by the force over the last part, then the contact."""
+    """The scene by Gauss-Seidel in equal parts of a step: v by the last force, then the contact."""
     values = dict(scene.start_values)
     m, held = float(values.pop("body.m")), float(values.pop("body.F"))
     count, H = scene.count * parts, scene.step / parts
