@@ -116,7 +116,7 @@ static double static_ratio(double chance_of_1) {
 }
 
 static void friction(ReferenceScene* s) {
-    s->law = 1 + random_below(4);
+    s->law = 1 + random_below(laws());
     s->limit = random_chance(0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;
     s->F_C = random_log(1e-2, 1e4);
     s->mu = random_log(0.03, 1.0);
@@ -213,7 +213,7 @@ static ReferenceScene mass_drawn(void) {
     s.V_1 = random_chance(0.5) ? random_log(1e-2, 3.0) : 0.0;
     surfaces(&s);
     s.a_d = random_chance(0.6) ? 0.0 : s.a_d;
-    s.law = 1 + random_below(4);
+    s.law = 1 + random_below(laws());
     s.limit = random_chance(0.3) ? LIMIT_LOAD : LIMIT_CONSTANT;
     s.contact = random_chance(0.6) ? CONTACT_CONSTANT : 1 + random_below(3);
     s.input = 1 + random_below(2);

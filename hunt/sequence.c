@@ -33,6 +33,7 @@ static const char* item_of(int k, double item) { return variable_of(k)->literals
 static bool is_choice(int k) { return variable_of(k) && variable_of(k)->literals; }
 
 const char* law_name(double law) { return item_of(0, law); }
+int laws(void) { return (int)variable_of(0)->max; }
 
 void put_scene(const ReferenceScene* scene, FcVariables* variables) {
     ReferenceScene of = *scene;

@@ -22,6 +22,7 @@ typedef struct {
 ReferenceScene start_values(void);
 
 const char* law_name(double law);
+int laws(void); // how many the FMU has
 
 // The variables of the FMU that a scene has.
 void put_scene(const ReferenceScene* scene, FcVariables* variables);

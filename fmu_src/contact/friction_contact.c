@@ -167,11 +167,23 @@ FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const Fc
 }
 
 double* fc_input_of(FcVariables* v, FcInput input) {
-    static const size_t PLACES[FC_INPUT_COUNT] = {
-        [FC_INPUT_V] = offsetof(FcVariables, V),     [FC_INPUT_D] = offsetof(FcVariables, d),
-        [FC_INPUT_E] = offsetof(FcVariables, E),     [FC_INPUT_LOAD] = offsetof(FcVariables, load),
-        [FC_INPUT_V_Y] = offsetof(FcVariables, V_y), [FC_INPUT_F] = offsetof(FcVariables, body.F)};
-    return (double*)(void*)((char*)v + PLACES[input]);
+    switch (input) { // without a default, so that the compiler tells of an input that has no case
+    case FC_INPUT_V:
+        return &v->V;
+    case FC_INPUT_D:
+        return &v->d;
+    case FC_INPUT_E:
+        return &v->E;
+    case FC_INPUT_LOAD:
+        return &v->load;
+    case FC_INPUT_V_Y:
+        return &v->V_y;
+    case FC_INPUT_F:
+        return &v->body.F;
+    case FC_INPUT_COUNT:
+        break;
+    }
+    return NULL;
 }
 
 static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still

@@ -79,7 +79,7 @@ CALLS = [
     _set("solver.tolerance", 0.0, "0", "1e-12", state="initialization"),
     _set("contact.R_q", 1e-6, "fixed"),
     _set("F_t", 1.0, "output", state="instantiated"),
-    _choose("friction.model", 5, "5", "4 (LuGre)", state="initialization"),
+    _choose("friction.model", 99, "99", "4 (LuGre)", state="initialization"),
     BadCall(
         "fmi2GetReal of an unknown value reference",
         BETWEEN_STEPS,

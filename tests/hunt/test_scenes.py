@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from tools import description
 from tools.build import build_targets
+from tools.project import ROOT
 
 WHERE = "tolerance=1e-06 law=LuGre"
 SCENES = Path(__file__).with_name("scenes.txt")
@@ -89,3 +92,19 @@ def test_what_is_no_scene_is_refused() -> None:
     for word in ("v=1", "law=Stribeck", "V=fast"):
         done = hunt("--replay", word)
         assert done.returncode == 2 and f"{word.split('=')[0]}" in done.stderr
+
+
+def test_the_reference_has_every_input_and_parameter() -> None:
+    """Each but those of the solver is a field of a scene, which scenes.c draws."""
+    drawn = (ROOT / "hunt/scenes.c").read_text(encoding="utf-8")
+    header = (ROOT / "hunt/reference.h").read_text(encoding="utf-8")
+    fields = {variable: field for field, variable in re.findall(r"X\((\w+), ([\w.]+)\)", header)}
+    wanted = {
+        each.name
+        for each in description.read().modelVariables
+        if each.causality in ("input", "parameter") and not each.name.startswith("solver.")
+    }
+    assert wanted - fields.keys() == set(), "hunt/reference.h lacks them"
+    is_set = r"&s(->|\.){0}\b|\bs(->|\.){0} \*?=[^=]"
+    never = {name for name in wanted if not re.search(is_set.format(fields[name]), drawn)}
+    assert never == set(), "hunt/scenes.c does not draw them"

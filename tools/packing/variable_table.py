@@ -41,6 +41,7 @@ def table(description: ModelDescription) -> str:
         f"const unsigned fc_variables_count = {len(variables)};",
         f"const unsigned fc_inputs[] = {{{', '.join(inputs)}}};",
         f"const unsigned fc_inputs_count = {len(inputs)};",
+        f'_Static_assert(FC_INPUT_COUNT == {len(inputs)}, "each input has an FcInput");',
         *_plausibility(description),
     ]
     return "\n".join(lines) + "\n"
