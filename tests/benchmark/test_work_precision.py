@@ -39,3 +39,15 @@ def test_the_page_has_what_long_steps_cost(bench: Bench) -> None:
         (line,) = (line for line in page.splitlines() if line.startswith(f"| {law} | {limit} |"))
         printed = [float(cell) for cell in line.split(" | ")[2:4]]
         assert printed == pytest.approx([float(cost) for cost in costs], rel=0.2), line
+
+
+@pytest.mark.parametrize("headings", [work_precision.RATIO_COLUMNS, work_precision.PERIOD_COLUMNS])
+def test_a_table_of_the_page_is_found_by_its_headings(headings: list[str]) -> None:
+    """One row in place of its rows; nothing else changes."""
+    page = work_precision.PAGE.read_text(encoding="utf-8")
+    row = ["1"] * len(headings)
+    changed = work_precision.with_table(page, headings, [row])
+    new = f"| {' | '.join(row)} |"
+    rest = set(page.splitlines()) - set(changed.splitlines())
+    assert changed.splitlines().count(new) == 1 and len(rest) > 5
+    assert all(line.count("|") == new.count("|") for line in rest)

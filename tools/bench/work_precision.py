@@ -210,6 +210,7 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
     "CVODE": ("plain CVODE",),
     "fixed step": FIXED_STEPS,
 }
+RATIO_COLUMNS = ["scene", "calls", *COLUMNS]
 PERIOD_COLUMNS = ["law", "limit", "held", "moving", "moving, CPU time"]
 
 
@@ -225,24 +226,22 @@ def ratio_cells(rows: Sequence[Mapping[str, Any]], error: float) -> list[list[st
 def renew_tables(
     compared: Sequence[Mapping[str, Any]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
 ) -> Path:
-    """The tables of docs/numerics.md, each under the words before it: of speed, and of long steps."""
+    """The tables of docs/numerics.md, by their headings: of speed, and of long steps."""
     text = PAGE.read_text(encoding="utf-8")
     rows = [[titles[name], *cells] for name, *cells in ratio_cells(compared, ERROR_OF_PAGE)]
-    head = f"errors of at most {ERROR_OF_PAGE:.0e} `F_C`:".replace("e-0", "e-")
-    text = with_table(text, head, ["scene", "calls", *COLUMNS], rows)
-    text = with_table(text, "divides CPU times:", PERIOD_COLUMNS, period_cells(periods))
+    text = with_table(text, RATIO_COLUMNS, rows)
+    text = with_table(text, PERIOD_COLUMNS, period_cells(periods))
     PAGE.write_text(text, encoding="utf-8")
     return PAGE
 
 
-def with_table(text: str, head: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """The text with this table in place of the one under the words head."""
-    lines = [headings, ["---"] * len(headings), *rows]
-    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    text, count = re.subn(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)*", table, text)
-    if count != 1:
-        raise ValueError(f"{count} tables under {head!r}")
-    return text
+def with_table(text: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """The text with this table in place of the one with the same headings."""
+    head, *below = (f"| {' | '.join(line)} |\n" for line in (headings, ["---"] * len(headings), *rows))
+    before, found, after = text.partition(head)
+    if not found:
+        raise ValueError(f"no table {headings}")
+    return before + head + "".join(below) + re.sub(r"^(?:\|.*\n)*", "", after)
 
 
 def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
