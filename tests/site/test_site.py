@@ -160,6 +160,17 @@ def test_the_menu_of_a_phone_leads_on(page: Page, site: Path) -> None:
     expect(page.locator("article h1")).to_contain_text("What the paper prints")
 
 
+@pytest.mark.parametrize("page", ["phone"], indirect=True)
+def test_a_phone_shows_every_variable_whole(page: Page, site: Path) -> None:
+    """The meaning of a variable needs no scrolling, and a number stands after the heading of its column."""
+    page.goto((site / "docs" / "using.html").as_uri())
+    boxes = page.locator(".pst-scrollable-table-container")
+    assert boxes.count() > 10
+    assert boxes.evaluate_all("all => all.every((box) => box.scrollWidth <= box.clientWidth)")
+    row = page.locator("tr", has=page.get_by_text("friction.staticRatio", exact=True))
+    assert re.search(r"unit 1\s+start 1\s+change tunable\s+meaning ", row.inner_text())
+
+
 def test_a_folder_with_something_else_stays(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").touch()
     with pytest.raises(UserError, match="no site"):

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from docutils.nodes import Element, SkipNode, math, math_block
+from docutils.nodes import Element, SkipNode, document, inline, literal, math, math_block, row, table
 from latex2mathml.converter import convert
 from sphinx.addnodes import desc_annotation
 from sphinx.application import Sphinx
@@ -117,6 +117,9 @@ MAINTAINERS = {  # scorer.js has the same pages: a search finds them last
     },
 }
 CONTENTS = {f"Users · {caption}": pages for caption, pages in USERS.items()} | MAINTAINERS
+# On a phone, longest in characters
+CELL = 50  # with a longer cell each row of the table is a paragraph
+WORD = 24  # a longer word of code may break
 PLAYGROUND = """
 <p><a href="../playground.html">Open it in a window of its own</a></p>
 <iframe class="playground" src="../playground.html" title="The FMU, alive" loading="lazy"></iframe>
@@ -176,6 +179,22 @@ def plain_text(app: Sphinx, what: str, name: str, thing: object, options: object
     lines[:] = written
 
 
+def fit_phone(app: Sphinx, tree: document, page: str) -> None:
+    """Marks for site.css long words of code and tables of long cells, whose cells get their headings."""
+    for code in tree.findall(literal):
+        if any(len(word) > WORD for word in code.astext().split()):
+            code["classes"].append("long")
+    for found in tree.findall(table):
+        heading, *rows = found.findall(row)
+        if all(len(cell.astext()) <= CELL for each in rows for cell in each):
+            continue
+        found["classes"].append("stacked")
+        for each in rows if len(heading) > 2 else []:
+            for title, cell in zip(heading[1:], each[1:], strict=True):
+                if cell.astext():
+                    cell[0].insert(0, inline("", f"{title.astext()} ", classes=["label"]))
+
+
 def without_paths(app: Sphinx, domain: str, kind: str, content: Element) -> None:
     """The value of a constant that is a path is that of the machine which builds the site: left out."""
     for annotation in list(content.parent.findall(desc_annotation)):
@@ -201,6 +220,7 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (visit_math, None), (visit_math, None))
     app.connect("html-page-context", to_front_page)
     app.add_config_value("older", "", "env")
+    app.connect("doctree-resolved", fit_phone)
     app.connect("object-description-transform", without_paths)
     app.connect("autodoc-process-docstring", plain_text)
     app.connect("source-read", complete)
