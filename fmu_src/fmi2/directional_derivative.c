@@ -59,6 +59,7 @@ static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unk
                            const FcVariableInfo* known) {
     const size_t place = unknown->offset;
     const bool is_mean = place == offsetof(FcVariables, F_t_mean) || place == offsetof(FcVariables, F_y_mean);
+    const bool is_body = place == offsetof(FcVariables, body.v) || place == offsetof(FcVariables, body.x);
     const bool is_force = place == offsetof(FcVariables, F_t) || place == offsetof(FcVariables, F_y);
     const bool is_state = fc_variable_is_state(unknown);
     const char* reason = NULL;
@@ -68,7 +69,7 @@ static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unk
             reason = "in initialization mode with initialState = Settled; afterwards it has";
         }
     } else if (!fc_instance_is_ode(instance) && known->causality == FC_CAUSALITY_PARAMETER &&
-               (is_mean || is_state)) {
+               (is_mean || is_state || is_body)) {
         reason = "in co-simulation, since the last step left it; F_t_settled and F_y_settled have";
     }
     if (reason) {
