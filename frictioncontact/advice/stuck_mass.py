@@ -81,7 +81,10 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
     span, damping = damping_range(m, sigma, master, H), least_damping(m, sigma, master, H)
     if span is None or damping is None:
         lines.append(f"No friction.sigma_1 makes a step of {H:g} s stable.")
-        lines.append("Take a shorter step, or Gauss-Seidel.")
+        lines.append(
+            f"Set body.m = {m:g}: the FMU then moves the mass, stable at every step (master: inside)."
+        )
+        lines.append(f"Or take Gauss-Seidel, in steps up to {LARGEST_STEP[GAUSS_SEIDEL] * time:.6g} s.")
         return "\n".join(lines), {}
     lines.append(f"At a step of {H:g} s it is stable from {span[0]:.6g} to {span[1]:.6g} N s/m.")
     if damping == 0.0:
@@ -111,10 +114,12 @@ def advice_inside(
     lines = [
         f"body.m = {m:g}: the FMU moves the mass by body.F, so every master is stable at every step.",
         "Let the master send the derivative of body.F too: held forces are its largest error.",
+        "V is the velocity of the other surface, without the mass: 0 if that surface stands.",
     ]
+    values: dict[str, Value] = {"V": 0.0, "body.m": m} if "V" not in scene else {"body.m": m}
     if scene.get("friction.model") == "Coulomb":
         lines.append("Coulomb friction holds the mass rigidly, and nothing rings.")
-        return "\n".join(lines), {"body.m": m}
+        return "\n".join(lines), values
     lines.append(f"The stuck mass rings at {rad / (2.0 * math.pi):.6g} Hz until friction.sigma_1 damps it:")
     lines.append(f"{low:g} N s/m is a tenth of the critical damping, {high:g} half of it.")
     swings = any(scene.get(f"vibration.{name}", 0.0) != 0.0 for name in ("V_1", "a_d"))
@@ -122,9 +127,9 @@ def advice_inside(
     if swings or set_already or H * rad <= 2.0 * math.pi:
         why = "a step is shorter than a cycle" if not set_already else "friction.sigma_1 damps it"
         lines.append(f"Nothing else is needed: {'slip damps it in each period' if swings else why}.")
-        return "\n".join(lines), {"body.m": m}
+        return "\n".join(lines), values
     lines.append(f"In a step of {H:g} s F_t is one sample of it: set friction.sigma_1, or connect F_t_mean.")
-    return "\n".join(lines), {"body.m": m, "friction.sigma_1": low}
+    return "\n".join(lines), values | {"friction.sigma_1": low}
 
 
 def coupling(
