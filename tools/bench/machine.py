@@ -36,7 +36,7 @@ ROWS = (
     (GAUSS_SEIDEL, False, "F_t", 1e-4, True),
     (LINEAR, False, "F_t", 1e-4, True),
     (JACOBI, False, "F_t", 1e-4, True),
-    (GAUSS_SEIDEL, True, "F_t_mean", PERIOD, False),
+    (GAUSS_SEIDEL, True, "F_t_mean", PERIOD, True),
     (GAUSS_SEIDEL, True, "F_t_mean", 10 * PERIOD, False),
     (JACOBI, True, "F_t_mean", PERIOD, True),
 )
