@@ -87,7 +87,7 @@ class Figure:
 
     def narrow(self) -> Figure:
         """The same with a panel below the other, for a phone."""
-        return replace(self, columns=1, size=(5.6, 4.1 * len(self.panels)))
+        return replace(self, columns=1, size=(5.2, 3.9 * len(self.panels)))
 
     def draw(self, *paths: Path) -> None:
         """Writes the figure under each path."""

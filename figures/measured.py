@@ -26,7 +26,7 @@ TWO_CYCLES = (100.75, 108.75)  # s, in the middle of the record
 
 
 def longitudinal(results: Mapping[str, tuple[Sliding, Sequence[Fit]]]) -> Figure:
-    figure, axes = style.subplots(len(results), 1, size=(6.4, 6.6), sharex=True)
+    figure, axes = style.subplots(len(results), 1, size=(5.2, 6.6), sharex=True)
     for panel, (name, (data, fits)) in zip(axes, results.items(), strict=True):
         V = 1e3 * data.V
         panel.loglog(V, data.without, "o", color=style.BLACK, mfc="white", label="measured, no vibration")
@@ -47,7 +47,7 @@ def longitudinal(results: Mapping[str, tuple[Sliding, Sequence[Fit]]]) -> Figure
 
 
 def cycles(data: Record, fits: Sequence[RecordFit]) -> Figure:
-    figure, (path, time) = style.subplots(2, 1, size=(6.4, 7.6))
+    figure, (path, time) = style.subplots(2, 1, size=(5.2, 7.0))
     whole = record.modelled(data)
     shown = (whole.time >= TWO_CYCLES[0]) & (whole.time <= TWO_CYCLES[1])
     middle = 0.5 * (whole.position[shown].min() + whole.position[shown].max())
@@ -66,7 +66,7 @@ def cycles(data: Record, fits: Sequence[RecordFit]) -> Figure:
 
 
 def unloading(data: Record, fits: Sequence[RecordFit]) -> Figure:
-    figure, (force, ratio) = style.subplots(2, 1, size=(6.4, 7.6))
+    figure, (force, ratio) = style.subplots(2, 1, size=(5.2, 7.2))
     part = data.between(*record.UNLOADING)
     carrying = part.load > record.CARRYING
     dahl = next(fit for fit in fits if fit.law == "Dahl")
@@ -92,7 +92,7 @@ def unloading(data: Record, fits: Sequence[RecordFit]) -> Figure:
 
 
 def normal(fmu: Path, data: NormalVibration, fits: Sequence[NormalFit]) -> Figure:
-    figure, axes = style.subplots(size=(7.0, 4.2))
+    figure, axes = style.subplots(size=(5.2, 5.0))
     V = np.geomspace(3e-3, 0.3, 60)
     for law in ("Dahl", "ElasticPlastic"):
         chosen = [fit for fit in fits if fit.law == law and fit.yielding is not None]
@@ -112,5 +112,5 @@ def normal(fmu: Path, data: NormalVibration, fits: Sequence[NormalFit]) -> Figur
         title="Vibration of 22 kHz normal to the sliding",
         ylim=(-5, 100),
     )
-    axes.legend(loc="upper right", fontsize=8)
+    figure.legend(loc="outside lower center")
     return figure

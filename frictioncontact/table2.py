@@ -144,7 +144,7 @@ def percent(mean: float, without: float) -> str:
     return f"{round(reduction(mean, without), 1) + 0.0:.1f}"  # + 0.0: no minus zero
 
 
-def conditions(row: Row, separator: str = ", ") -> str:
+def conditions(row: Row) -> str:
     """What is switched on in a row, for headings."""
     parts = []
     if row.softened:
@@ -153,7 +153,7 @@ def conditions(row: Row, separator: str = ", ") -> str:
         parts.append(f"$a_d$ {1e6 * row.a_d:.1f} µm")
     if row.V_1:
         parts.append(f"$V_1$ {row.V_1:.2f} m/s")
-    return separator.join(parts) or "no vibration"
+    return ", ".join(parts) or "no vibration"
 
 
 def draw(fmu: FrictionFmu, table: Sequence[Result], *paths: Path) -> None:
@@ -162,26 +162,24 @@ def draw(fmu: FrictionFmu, table: Sequence[Result], *paths: Path) -> None:
 
     from frictioncontact import style
 
-    figure, axes = style.subplots(
-        3, 3, size=(11.0, 9.6), gridspec_kw={"height_ratios": [1.0, 1.0, 1.15]}, squeeze=False
-    )
-    for panel, result in zip(axes[:2].flat, table, strict=True):
+    figure, axes = style.subplots(4, 2, size=(5.2, 9.6), gridspec_kw={"height_ratios": [1.0, 1.0, 1.0, 2.2]})
+    for panel, result in zip(axes[:3].flat, table, strict=True):
         _draw_waves(panel, fmu, result)
-    remark = "passes $F_C$ while the surfaces approach:\n$\\delta$ lags behind the rising $\\sigma$"
-    style.note(axes[1, 0], remark, x=0.5, y=0.16, ha="center")
-    for panel in axes[:2, 0]:
-        panel.set_ylabel("friction force $F_t$ [N]")
-    for panel in axes[1]:
-        panel.set_xlabel("time in the periodic state [µs]")
-    grid = axes[2, 0].get_gridspec()
+    for panel in axes[:3, 0]:
+        panel.set_ylabel("$F_t$ [N]")
+    for panel in axes[:3, 1]:
+        panel.tick_params(labelleft=False)
     for panel in axes[2]:
+        panel.set_xlabel("time in a period [µs]")
+    grid = axes[3, 0].get_gridspec()
+    for panel in axes[3]:
         panel.remove()
-    _draw_means(figure.add_subplot(grid[2, :]), table)
+    _draw_means(figure.add_subplot(grid[3, :]), table)
     handles = [
         Line2D([], [], color=style.SOURCE[name], lw=2.0, ls=":" if name == "paper" else "-", label=label)
         for name, label in LABELS.items()
     ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3, fontsize=10)
+    figure.legend(handles=handles, loc="outside upper center", ncols=1, fontsize=10)
     style.save(figure, *paths)
 
 
@@ -194,7 +192,7 @@ def _draw_waves(axes: Axes, fmu: FrictionFmu, result: Result) -> None:
     axes.axhline(result.row.paper_force, color=style.SOURCE["paper"], ls=":", lw=1.8)
     axes.axhline(0.0, color=style.GREY, lw=0.8, zorder=0.5)
     axes.set_title(f"Row {result.row.number}", pad=18)
-    axes.text(0.0, 1.025, conditions(result.row), transform=axes.transAxes)
+    axes.text(0.0, 1.025, conditions(result.row), transform=axes.transAxes, fontsize=9, in_layout=False)
     axes.set(ylim=(-70.0, 150.0), yticks=[-55, 0, 55, 110], xlim=(0.0, 1e6 * run["time"][-1]))
 
 
@@ -208,10 +206,10 @@ def _draw_means(axes: Axes, table: Sequence[Result]) -> None:
     }
     place, width = np.arange(len(table)), 0.26
     for k, (name, values) in enumerate(columns.items()):
-        bars = axes.bar(place + (k - 1) * width, values, 0.92 * width, color=style.SOURCE[name])
+        bars = axes.barh(place + (k - 1) * width, values, 0.92 * width, color=style.SOURCE[name])
         axes.bar_label(bars, [f"{value:.1f}" for value in values], padding=2, fontsize=9)
-    axes.axhline(paper.COULOMB_FORCE, color=style.GREY, lw=0.9, zorder=0.5)
-    axes.set_xticks(place, [conditions(result.row, "\n") for result in table])
-    axes.set(ylabel="mean friction force [N]", ylim=(0.0, 66.0))
-    axes.grid(axis="x", visible=False)
-    axes.set_title("Mean of each row over one vibration period")
+    axes.set_yticks(place, [f"Row {result.row.number}" for result in table])
+    axes.invert_yaxis()
+    axes.set(xlabel="mean friction force [N]", xlim=(0.0, 66.0))
+    axes.grid(axis="y", visible=False)
+    axes.set_title("Mean of each row over a period")

@@ -99,7 +99,7 @@ def simulate(fmu: Path, bands: list[Band], overrides: dict[str, str]) -> list[fl
 
 def draw(bands: list[Band], values: list[float], path: Path) -> None:
     """Each value in its band; bands are drawn as wide as each other."""
-    figure, axes = plt.subplots(figsize=(8.5, 0.5 * len(bands) + 1.2), layout="constrained")
+    figure, axes = plt.subplots(figsize=(5.2, 0.45 * len(bands) + 1.0), layout="constrained")
     for line, (band, value) in enumerate(zip(bands, values, strict=True)):
         place = (value - band.low) / (band.high - band.low)
         inside = band.low <= value <= band.high

@@ -71,7 +71,7 @@ print(f"mean friction from {mean.min():.3f} to {mean.max():.3f} F_C")
 # Below zero the vibration drives the sliding, as in an ultrasonic motor.
 
 # %%
-figure, axis = style.subplots(1, 1, size=(7.0, 5.0))
+figure, axis = style.subplots(1, 1, size=(5.2, 4.4))
 axis.set_xscale("log")
 axis.set_yscale("log")
 top = max(1.0, mean.max())

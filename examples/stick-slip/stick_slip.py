@@ -124,14 +124,14 @@ def importers_differ(ssp: Path, step_ns: int = 1_000_000) -> float:
 
 
 def draw(ssp: Path, rows: list[dict[str, float]], output: Path) -> None:
-    figure, axes = style.subplots(3, 1, size=(8.5, 9.0), gridspec_kw={"height_ratios": [1, 1, 1.3]})
+    figure, axes = style.subplots(3, 1, size=(5.2, 8.6), gridspec_kw={"height_ratios": [1, 1, 1.3]})
     p = parameters((HERE / "SystemStructure.ssd").read_text())
     times = np.linspace(0.0, DURATION, 4001)
     _, v, F = reference(times)
     _shade_sticking(axes[:2], times, np.abs(F) < 0.98 * p["contact", "F_C"])
     axes[0].plot(times, 1e3 * belt_velocity(times, p), color=style.GREY, lw=1.0, label="belt")
     axes[0].plot(times, 1e3 * v, color=style.BLUE, label="mass, one system")
-    axes[0].set_ylabel("velocity [mm/s]")
+    axes[0].set(ylabel="velocity [mm/s]", ylim=(-45, 105))
     axes[1].plot(times, F, color=style.BLUE, label="one system (scipy LSODA)")
     for step_ns, colour in ((2_000_000, style.AMBER), (200_000, style.ORANGE)):
         count = round(DURATION * 1e9) // step_ns
@@ -141,8 +141,8 @@ def draw(ssp: Path, rows: list[dict[str, float]], output: Path) -> None:
             step_ns * 1e-9 * np.arange(1, count + 1), run["contact", "F_t"], color=colour, lw=1.0, label=label
         )
     axes[1].set_ylabel("friction force $F_t$ [N]")
-    axes[1].set_xlabel("time [s]  (shaded: the contact sticks, $|F_t| < 0.98 F_C$)")
-    axes[1].set_ylim(-62, 88)
+    axes[1].set_xlabel("time [s]; shaded: sticking, $|F_t| < 0.98 F_C$")
+    axes[1].set_ylim(-62, 140)
     steps = [row["step [s]"] for row in rows]
     for name, colour in (
         ("largest error of x over F_C/k", style.GREEN),
@@ -156,7 +156,7 @@ def draw(ssp: Path, rows: list[dict[str, float]], output: Path) -> None:
     axes[2].set_xlabel("communication step [s]")
     axes[2].set_ylabel("error against one system")
     for panel in axes:
-        panel.legend(loc="upper center" if panel is axes[1] else "best", ncols=3 if panel is axes[1] else 1)
+        panel.legend(loc="upper left")
     style.save(figure, output)
 
 

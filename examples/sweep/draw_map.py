@@ -18,7 +18,7 @@ def draw(results: pd.DataFrame, path: Path) -> None:
     table = results.pivot(index="contact.stiffnessScale", columns="V", values="reduction")
     velocity = np.array(table.columns)
     kappa = np.array(table.index) * STIFFNESS_PRINTED * V_1 / (2 * np.pi * FREQUENCY * COULOMB_FORCE)
-    figure, (field, cut) = style.subplots(1, 2, size=(10.0, 4.0))
+    figure, (field, cut) = style.subplots(2, 1, size=(5.2, 7.6))
     levels = np.linspace(0, 100, 11)
     shown = np.clip(table, 0.0, 100.0)  # where nothing is reduced, rounding leaves -1e-14
     filled = field.contourf(velocity / V_1, kappa, shown, levels, cmap="viridis")

@@ -86,7 +86,7 @@ def coupled(ssp: Path, step_ns: int) -> tuple[dict[tuple[str, str], np.ndarray],
 def draw(
     runs: dict[str, tuple[float, dict]], steps: Sequence[float], found: Sequence[float], path: Path
 ) -> None:
-    figure, (force, position, error) = style.subplots(3, 1, size=(8.5, 9.0))
+    figure, (force, position, error) = style.subplots(3, 1, size=(5.2, 8.6))
     times, y = reference()
     window = 40  # points of the reference in 2 ms
     mean = (y[2][window:] - y[2][:-window]) / (times[window] - times[0])
@@ -100,7 +100,7 @@ def draw(
         force.step(1e3 * ends, run["slider", "F"], where="pre", color=colours[name], lw=1.2, label=label)
         position.plot(1e3 * ends, 1e3 * run["slider", "x"], ".-", color=colours[name], lw=1.0, label=label)
     force.set_ylabel("friction force [N]")
-    position.set_ylabel("position behind the drive [mm]")
+    position.set(ylabel="position behind the drive [mm]", ylim=(0.0, 3.9))
     position.set_xlabel("time after the ultrasound is switched on [ms]")
     error.loglog(
         steps, found, "o-", color=style.ORANGE, label="F_t_mean coupled: largest error of x over F_C/k"

@@ -46,7 +46,7 @@ def panels(stiffness: float) -> list[Panel]:
 
 
 def draw_panels(path: Path) -> None:
-    figure, grid = style.subplots(2, 2, size=(6.6, 7.6), sharey=True)
+    figure, grid = style.subplots(2, 2, size=(5.2, 6.4), sharey=True)
     for axes, stiffness in zip(grid.flat, STIFFNESSES, strict=True):
         _draw_course(axes, stiffness)
     for axes in grid[:, 0]:
@@ -94,7 +94,7 @@ WIDTH, HEIGHT = 0.60, 0.10  # of a box
 
 
 def draw_regimes(path: Path) -> None:
-    figure, axes = style.subplots(size=(5.6, 6.4))
+    figure, axes = style.subplots(size=(5.2, 6.4))
     axes.set(xlim=(0.0, 1.0), ylim=(-0.01, 1.01))
     axes.axis("off")
     for x, y, text in BOXES.values():
@@ -151,7 +151,7 @@ def bound(fmu: FrictionFmu, scene: dict[str, Value]) -> float:
 
 
 def draw_map(fmu: FrictionFmu, path: Path) -> None:
-    figure, both = style.subplots(1, 2, size=(7.4, 3.9))
+    figure, both = style.subplots(2, 1, size=(4.2, 8.0))
     for axes, (title, scene), most, first in zip(both, MAPS.items(), LARGEST, FIRST, strict=True):
         D = bound(fmu, scene)
         starts = most * np.linspace(-1.0, 1.0, 161)
@@ -170,8 +170,7 @@ def draw_map(fmu: FrictionFmu, path: Path) -> None:
         axes.text(edge + 0.03 * most, -0.93 * most, "e", color=style.PINK)
         _draw_periods(axes, fmu, scene, D, first)
         square = {"xlim": (-most, most), "ylim": (-most, most), "aspect": "equal"}
-        axes.set(title=f"{title}: P = {slope:.2g}", xlabel="δ₀/D", **square)
-    both[0].set_ylabel("δ₁/D, a period later")
+        axes.set(title=f"{title}: P = {slope:.2g}", xlabel="δ₀/D", ylabel="δ₁/D, a period later", **square)
     style.save(figure, path)
 
 

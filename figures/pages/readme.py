@@ -30,7 +30,7 @@ STILL = {"vibration.V_1": 0.0, "vibration.a_d": 0.0}
 
 def front(fmu: FrictionFmu, path: Path) -> None:
     """The README's mass of 1 kg under 30 N, with and without vibration: steps of 1 ms over those of 10 us."""
-    figure, axes = style.subplots(size=(7.2, 3.0))
+    figure, axes = style.subplots(size=(5.2, 3.4))
     pulled = {"V": 0.0, "contact.stiffnessScale": 4.417e-7, "body.m": 1.0, "body.F": 30.0}
     looks = (V_1, style.ORANGE, "with a vibration of 1.44 m/s at 20 kHz"), (0.0, style.BLUE, "without")
     for amplitude, colour, label in looks:
@@ -38,8 +38,8 @@ def front(fmu: FrictionFmu, path: Path) -> None:
         for step, look in ((1e-5, {"lw": 1.0}), (1e-3, {"marker": "o", "ls": "", "ms": 5, "label": label})):
             run = simulate(fmu, scene, step, round(0.02 / step), outputs=("body.v",))
             axes.plot(1e3 * run["time"], 1e3 * run["body.v"], color=colour, **look)
-    axes.set(xlabel="time [ms]", ylabel="velocity of the mass [mm/s]", xlim=(0.0, 20.3))
-    axes.set_title("30 N pull a mass of 1 kg over a contact with a limit of 55 N")
+    axes.set(xlabel="time [ms]", ylabel="velocity of the mass [mm/s]", xlim=(0.0, 20.3), ylim=(None, 460.0))
+    axes.set_title("30 N pull 1 kg over a contact with a limit of 55 N")
     axes.legend(loc="upper left", title="dots: steps of 1 ms, lines: of 10 µs", alignment="left")
     style.save(figure, path)
 
@@ -112,7 +112,7 @@ def fmpy_example(fmu: FrictionFmu, path: Path) -> None:
     """The result of the README's `fmpy simulate`: the default experiment from rest."""
     run = simulate(fmu, SCENE, 5e-7, 400)
     time = 1e6 * run["time"]
-    figure, (force, stiffness, work) = style.subplots(3, 1, size=(7.6, 5.6), sharex=True)
+    figure, (force, stiffness, work) = style.subplots(3, 1, size=(5.2, 5.6), sharex=True)
     force.plot(time, run["F_t"], lw=2.0, label="F_t")
     force.plot(time, run["F_t_mean"], lw=1.0, label="F_t_mean")
     stiffness.plot(time, 1e-6 * run["sigma"], lw=2.0, label="sigma")

@@ -95,7 +95,7 @@ def mass_work(points: Sequence[Any], titles: Mapping[str, str], path: Path) -> N
 
 def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
     tables = dict([*pd.DataFrame(rows).groupby("sigma")])
-    figure, axes = style.subplots(len(tables), 1, size=(6.4, 3.6 * len(tables)), squeeze=False)
+    figure, axes = style.subplots(len(tables), 1, size=(5.2, 3.4 * len(tables)), squeeze=False)
     for panel, (sigma, table) in zip(axes.flat, tables.items(), strict=True):
         for kind, colour, slope in (("held", style.ORANGE, 1), ("linear", style.BLUE, 2)):
             own = table[table.inputs == kind]
@@ -134,7 +134,7 @@ def stability(
     table = pd.DataFrame(rows)
     methods, z = list(table.method.unique()), table.z.unique()
     half = (z[1] / z[0]) ** 0.5
-    figure, axes = style.subplots(size=(6.4, 4.2))
+    figure, axes = style.subplots(size=(5.2, 4.4))
     places, colours = table.method.map(methods.index), table.behaviour.map(BEHAVIOUR)
     axes.barh(places, table.z * (half - 1.0 / half), 0.72, table.z / half, color=colours, linewidth=0)
     for edge in edges:
@@ -145,7 +145,7 @@ def stability(
     axes.set_yticks(range(len(methods)), methods)
     axes.invert_yaxis()
     axes.grid(False)
-    axes.set_title("Steady sliding from rest: behaviour against z")
+    axes.set_title("Steady sliding from rest")
     handles: list[object] = [Patch(color=colour, label=name) for name, colour in BEHAVIOUR.items()]
     handles += [
         Line2D([], [], color=style.BLACK, label="limit in theory"),
@@ -162,12 +162,12 @@ def coupled(
     belt: Belt,
     folder: Path,
 ) -> list[Path]:
-    figure, (motion, panel) = style.subplots(2, 1, size=(6.4, 7.2))
+    figure, (motion, panel) = style.subplots(2, 1, size=(5.2, 7.0))
     t = np.linspace(0.0, belt.end, 1000)
     x, _, F = reference(t)
     motion.plot(1e3 * t, F / belt.F_C, color=style.BLACK, label=r"$F_t / F_C$")
     motion.plot(1e3 * t, belt.k * x / belt.F_C, color=style.GREEN, label=r"$k x / F_C$")
-    motion.set(xlabel="time [ms]", title="Mass on a belt that moves to and fro, solved as one system")
+    motion.set(xlabel="time [ms]", title="Mass on a belt, solved as one system")
     motion.legend()
     table = pd.DataFrame(errors)
     for coupling, colour in COUPLING.items():
@@ -183,9 +183,9 @@ def coupled(
             panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
     panel.xaxis.set_minor_formatter(NullFormatter())
     panel.set(
-        xlabel="communication step; model exchange: time per evaluation of rates [s]",
+        xlabel="communication step, or time per evaluation of rates [s]",
         ylabel="largest error of $F_t$ over $F_C$",
-        title="Jacobi master; dashed: stable up to here while it sticks",
+        title="Jacobi master; dashed: limit of stable sticking",
     )
-    panel.legend()
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
     return save_both(figure, folder, "coupled")

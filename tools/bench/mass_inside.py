@@ -123,21 +123,19 @@ def draw(fmu: FrictionFmu, path: Path) -> None:
     """A pulled mass: v, F_t and F_t_mean at 1 ms with the mass inside, over the exact motion."""
     row = ROWS[0]
     truth, inside, jacobi = exact(row, 1e-4), coupled(fmu, row, INSIDE), coupled(fmu, row, JACOBI)
-    figure, (speed, force) = style.subplots(2, 1, size=(6.4, 5.6), sharex=True)
+    figure, (speed, force) = style.subplots(2, 1, size=(5.2, 6.0), sharex=True)
     ms = 1e3 * inside["time"]
     speed.plot(1e3 * truth["time"], 1e3 * truth["v"], color=style.BLACK, lw=1.2, label="exact motion")
     speed.plot(ms, 1e3 * inside["v"], "o", color=style.BLUE, ms=3.5, label="mass inside, 1 ms")
     speed.plot(ms, 1e3 * jacobi["v"], "x", color=style.ORANGE, ms=4, label="mass in a Jacobi master, 1 ms")
-    speed.set(
-        ylabel="velocity v [mm/s]", title="A mass of 1 kg is pulled by 80 N at 10 Hz over a dry contact"
-    )
+    speed.set(ylabel="velocity v [mm/s]", title="80 N at 10 Hz pull a mass of 1 kg over a dry contact")
     force.plot(1e3 * truth["time"], row.pull(truth["time"]), color=style.GREY, lw=1.0, ls="--", label="pull")
     force.plot(1e3 * truth["time"], truth["F_t"], color=style.BLACK, lw=1.2, label="exact $F_t$")
     force.plot(ms, inside["F_t"], "o", color=style.BLUE, ms=3.5, label="$F_t$, mass inside")
     force.stairs(inside["F_t_mean"][1:], ms, color=style.GREEN, baseline=None, lw=1.2, label="$F_t$_mean")
     force.set(ylabel="force [N]", xlabel="time [ms]", xlim=(0.0, 1e3 * row.end), ylim=(-130.0, 90.0))
-    for axes in (speed, force):
-        axes.legend(loc="lower left", ncols=2, fontsize=8.5)
+    speed.legend(loc="upper right")
+    force.legend(loc="lower left", ncols=2)
     style.save(figure, path)
 
 
