@@ -203,11 +203,13 @@ def without_paths(app: Sphinx, domain: str, kind: str, content: Element) -> None
 
 
 def visit_math(writer: HTML5Translator, node: math | math_block) -> None:
-    """TeX as MathML, which browsers typeset themselves."""
-    display = "block" if isinstance(node, math_block) else "inline"
+    """TeX as MathML, which browsers typeset themselves; what a \\quad separates may stand on a line of its own."""
+    is_block = isinstance(node, math_block)
+    parts = re.split(r"\\q?quad", node.astext()) if is_block else [node.astext()]
+    formulas = (convert(part, display="block" if is_block else "inline") for part in parts)
     tight = '<mo lspace="0" rspace="0">&#x0007C;</mo>'  # a bar of |V| is no relation
-    formula = convert(node.astext(), display=display).replace("<mo>&#x0007C;</mo>", tight)
-    writer.body.append(f'<div class="formula">{formula}</div>' if display == "block" else formula)
+    formula = "".join(formulas).replace("<mo>&#x0007C;</mo>", tight)
+    writer.body.append(f'<div class="formula">{formula}</div>' if is_block else formula)
     raise SkipNode
 
 
