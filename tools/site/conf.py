@@ -119,6 +119,7 @@ MAINTAINERS = {  # scorer.js has the same pages: a search finds them last
 CONTENTS = {f"Users · {caption}": pages for caption, pages in USERS.items()} | MAINTAINERS
 # On a phone, longest in characters
 CELL = 50  # with a longer cell each row of the table is a paragraph
+NUMBER = 9  # a cell that is not longer, such as 1e-6 or 21 (62 %), does not break
 WORD = 24  # a longer word of code may break
 PLAYGROUND = """
 <p><a href="../playground.html">Open it in a window of its own</a></p>
@@ -180,13 +181,17 @@ def plain_text(app: Sphinx, what: str, name: str, thing: object, options: object
 
 
 def fit_phone(app: Sphinx, tree: document, page: str) -> None:
-    """Marks for site.css long words of code and tables of long cells, whose cells get their headings."""
+    """Marks long words of code, short cells and tables of long ones, whose cells get their headings."""
     for code in tree.findall(literal):
         if any(len(word) > WORD for word in code.astext().split()):
             code["classes"].append("long")
     for found in tree.findall(table):
         heading, *rows = found.findall(row)
-        if all(len(cell.astext()) <= CELL for each in rows for cell in each):
+        cells = [cell for each in rows for cell in each]
+        for cell in cells:
+            if len(cell.astext()) <= NUMBER:
+                cell["classes"].append("short")
+        if all(len(cell.astext()) <= CELL for cell in cells):
             continue
         found["classes"].append("stacked")
         for each in rows if len(heading) > 2 else []:
@@ -203,7 +208,7 @@ def without_paths(app: Sphinx, domain: str, kind: str, content: Element) -> None
 
 
 def visit_math(writer: HTML5Translator, node: math | math_block) -> None:
-    """TeX as MathML, which browsers typeset themselves; what a \\quad separates may stand on a line of its own."""
+    """TeX as MathML, which browsers typeset. What a quad separates may stand on a line of its own."""
     is_block = isinstance(node, math_block)
     parts = re.split(r"\\q?quad", node.astext()) if is_block else [node.astext()]
     formulas = (convert(part, display="block" if is_block else "inline") for part in parts)
