@@ -36,6 +36,7 @@ smartquotes_action = "D"  # dashes only, which lists of parameters are written w
 highlight_language = "none"  # of what names no language
 default_role = "code"  # a name between single backticks, in Markdown as in docstrings
 autodoc_typehints_format = "short"
+autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike"}  # by its name, not by its union of types
 python_maximum_signature_line_length = 90
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
