@@ -322,7 +322,8 @@ def test_derivatives_by_states_in_co_simulation(new_instance: Callable[..., Inst
 REFUSED = {
     "of the last step": ({}, {}, "step complete", "F_t_mean", "F_C", "F_t_mean has no derivative by F_C"),
     "the state after a step": ({}, {}, "step complete", "delta", "vibration.V_1", "delta has no derivative"),
-    "the mass after a step": ({}, {"body.m": 1.0}, "step complete", "body.v", "F_C", "body.v has no derivative"),
+    "the mass after a step": ({}, {"body.m": 1.0}, "step complete", "body.v", "F_C",
+                              "body.v has no derivative"),
     "a settled start": ({"initialState": 2}, {}, "initialization", "F_t", "V", "initialState = Settled"),
     "a fixed parameter": ({}, {}, "step complete", "sigma", "contact.R_q", "contact.R_q .*is not an input"),
     "static friction that begins": (ELASTIC_PLASTIC, {}, "step complete", "F_t", "friction.staticRatio",
