@@ -67,12 +67,14 @@ static Close event_function(const March* march, Event event, const FcNodes* node
     const double D = radius(nodes, LAST);
     const double rounding = FC_BODY_ROUNDING * march->speed;
     double allowed;
+    double way; // m, of the bristle in the panel, at most its bound: heat is as accurate as the path is long
     switch (event) {
     case REVERSAL:
         for (int i = 0; i < POINTS; i++) {
             f[i] = -march->at.side * panel->w[i];
         }
-        allowed = FC_BODY_SHARE_OF_LAYER * sqrt(2.0 * tolerance * D * fabs(panel->rate[LAST].w));
+        way = fc_min(D, fc_max(fabs(panel->w[START]), fabs(panel->w[LAST])) * nodes->duration);
+        allowed = FC_BODY_SHARE_OF_LAYER * sqrt(2.0 * tolerance * way * fabs(panel->rate[LAST].w));
         return (Close){rounding, fc_max(rounding, allowed)};
     case MEETING: // of the squares, which are smooth where delta is 0
         for (int i = 0; i < POINTS; i++) {
