@@ -117,6 +117,34 @@ static double place_of(const March* march, Event event, const FcNodes* nodes, co
     return FC_FASTEST(fc_first_upcrossing)(f, close.rounding);
 }
 
+// The slope of the polynomial through the points at the panel's end, over the panel.
+static double slope_at_end(const double f[POINTS]) {
+    double slope = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        if (i != LAST) {
+            slope += FC_RADAU.barycentric[i] / FC_RADAU.barycentric[LAST] * (f[i] - f[LAST]) /
+                     (FC_RADAU.node[LAST] - FC_RADAU.node[i]);
+        }
+    }
+    return slope;
+}
+
+// The same of a meeting, also at a top between the last two points, which no sample shows: of the parabola with the slope at the
+// end. A top that is farther below the bound than above the end is none.
+static double place_of_meeting(const March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
+    double f[POINTS];
+    const Close close = event_function(march, MEETING, nodes, panel, f);
+    const double place = FC_FASTEST(fc_first_upcrossing)(f, close.rounding);
+    const double slope = slope_at_end(f);
+    if (place > 1.0 && slope < 0.0 && f[LAST] > f[LAST - 1]) {
+        const double x = FC_RADAU.node[LAST] - FC_RADAU.node[LAST - 1];
+        const double bend = (f[LAST] - f[LAST - 1] - slope * x) / (x * x);
+        const double above = 0.25 * slope * slope / bend;
+        return f[LAST] + 2.0 * above > 0.0 ? 1.0 + 0.5 * slope / bend : place;
+    }
+    return place;
+}
+
 // The same of a reversal. A w that begins beyond 0, as far as an event may miss it, may come back between two samples: the
 // points are close at the start.
 static double place_of_reversal(const March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
@@ -150,7 +178,8 @@ static Event first_event(const March* march, const FcNodes* nodes, const FcBodyP
     }
     if (kind == FC_SLIPS || march->is_bounded) {
         const Event at_bound = kind == FC_SLIPS ? END_OF_PUSH : MEETING;
-        const double bound = place_of(march, at_bound, nodes, panel);
+        const double bound = kind == FC_SLIPS ? place_of(march, at_bound, nodes, panel)
+                                              : place_of_meeting(march, nodes, panel);
         first = bound < *place ? at_bound : first;
         *place = fc_min(*place, bound);
     }
@@ -161,18 +190,6 @@ static Event first_event(const March* march, const FcNodes* nodes, const FcBodyP
     }
     assert(*place >= 0.0);
     return *place <= 1.0 ? first : NO_EVENT;
-}
-
-// The slope of the polynomial through the points at the panel's end, over the panel.
-static double slope_at_end(const double f[POINTS]) {
-    double slope = 0.0;
-    for (int i = 0; i < POINTS; i++) {
-        if (i != LAST) {
-            slope += FC_RADAU.barycentric[i] / FC_RADAU.barycentric[LAST] * (f[i] - f[LAST]) /
-                     (FC_RADAU.node[LAST] - FC_RADAU.node[i]);
-        }
-    }
-    return slope;
 }
 
 // ---- panels ----
