@@ -478,21 +478,25 @@ static void begin_slip(March* march) {
     }
 }
 
-// Behind a reversal a bristle relaxes over the layer L = sqrt(2 D / |w'|), and a Stribeck curve lasts V_S / |w'|:
-// t = t_c + L sinh(u).
-static void pass_reversal(March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
+// Behind a reversal, also one before the step, a bristle relaxes over the layer L = sqrt(2 D / |w'|), and a Stribeck curve lasts
+// V_S / |w'|: t = t_c + L sinh(u).
+static void use_layer(March* march, double w, double w_rate, double D) {
     const FcFriction* friction = friction_of(march);
-    assert(march->at.kind == FC_RELAXES);
-    const double w_rate = panel->rate[LAST].w;
-    march->at.side = w_rate > 0.0 ? 1 : w_rate < 0.0 ? -1 : -march->at.side;
-    const double away = w_rate != 0.0 ? panel->w[LAST] / w_rate : 0.0; // s, from the reversal
-    double length = sqrt(2.0 * nodes->limit[LAST] / (nodes->sigma[LAST] * fabs(w_rate)));
+    assert(march->at.kind == FC_RELAXES && D >= 0.0);
+    const double away = w_rate != 0.0 ? w / w_rate : 0.0; // s, from the reversal
+    double length = sqrt(2.0 * D / fabs(w_rate));
     if (fc_has_stribeck_curve(friction)) {
         length = fc_min(length, friction->V_S / fabs(w_rate));
     }
     const bool is_layer = length >= DBL_MIN && length < march->interval->duration && fabs(away) <= length;
     use_variable(march, march->t - fc_max(0.0, away), is_layer ? length : INFINITY);
     march->h = is_layer ? march->interval->duration : 0.0;
+}
+
+static void pass_reversal(March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
+    const double w_rate = panel->rate[LAST].w;
+    march->at.side = w_rate > 0.0 ? 1 : w_rate < 0.0 ? -1 : -march->at.side;
+    use_layer(march, panel->w[LAST], w_rate, nodes->limit[LAST] / nodes->sigma[LAST]);
 }
 
 static void pass(March* march, Event event, const FcNodes* nodes, const FcBodyPanel* panel) {
@@ -674,6 +678,9 @@ static void begin(March* march, FcBristle bristle) {
         if (rate.push < 0.0 || (rate.push == 0.0 && side * rate.w < 0.0)) {
             begin_free(march, w, w_rate);
         }
+    }
+    if (march->at.kind == FC_RELAXES) {
+        use_layer(march, w, w_rate, at.limit / at.sigma);
     }
 }
 
