@@ -53,18 +53,20 @@ def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Pat
     names = [name for name in SHOWN if name in titles] or list(titles)
     table = pd.DataFrame(points).query("failure == ''").sort_values("setting")
     rows = -(-len(names) // 2)
-    figure, axes = style.subplots(rows, 2, size=(6.4, 2.5 * rows + 0.9), sharex=True, squeeze=False)
+    figure, axes = style.subplots(rows, 2, size=(5.2, 2.3 * rows + 1.0), sharex=True, squeeze=False)
     for panel, name in zip(axes.flat, names, strict=False):
         for method, (label, colour) in METHODS.items():
             own = table[(table.case == name) & (table.method == method)]
             errors = own[["error_F_t", "error_F_t_mean"]].max(axis=1).clip(SMALLEST_ERROR)
             width = 2.4 if method == "collocation" else 1.4
             panel.loglog(errors, 1e6 * own.cpu, "o-", color=colour, lw=width, ms=3, label=label)
-        panel.set(title=titles[name], xlim=(3.0, SMALLEST_ERROR / 3), xticks=[1.0, 1e-4, 1e-8, 1e-12, 1e-16])
+        panel.set(xlim=(3.0, SMALLEST_ERROR / 3), xticks=[1.0, 1e-4, 1e-8, 1e-12, 1e-16])
+        panel.set_title(titles[name].replace(", ", "\n", 1))
+        panel.yaxis.set_minor_formatter(NullFormatter())
     for panel in axes.flat[len(names) :]:
         panel.set_visible(False)
     for panel in axes[-1]:
-        panel.set_xlabel(r"error of $F_t$ and its mean, over $F_C$")
+        panel.set_xlabel("error over $F_C$")
     figure.supylabel("CPU time for 50 µs [µs]", fontsize=10)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return save_both(figure, folder, "work-precision")
@@ -73,7 +75,7 @@ def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Pat
 def mass_work(points: Sequence[Any], titles: Mapping[str, str], path: Path) -> None:
     """A panel a scene; a point's cpu is over simulated time. An error of rounding is drawn at its size."""
     rows = -(-len(titles) // 2)
-    figure, axes = style.subplots(rows, 2, size=(6.4, 2.6 * rows + 0.9), sharex=True, sharey=True)
+    figure, axes = style.subplots(rows, 2, size=(5.2, 2.4 * rows + 0.9), sharex=True, sharey=True)
     table = pd.DataFrame(points).query("failure == ''")
     for panel, (name, title) in zip(axes.flat, titles.items(), strict=True):
         panel.axhline(1.0, color=style.GREY, lw=0.9, ls="--")
@@ -83,10 +85,10 @@ def mass_work(points: Sequence[Any], titles: Mapping[str, str], path: Path) -> N
             panel.loglog(errors, own.cpu, "o-", color=colour, ms=3, label=label)
             if method == GAUSS_SEIDEL:  # its longest step
                 panel.loglog(errors.iloc[0], own.cpu.iloc[0], "x", color=colour, ms=9, mew=1.8)
-        panel.set(xlim=(3.0, SMALLEST_ERROR / 3), xticks=[1.0, 1e-4, 1e-8, 1e-12, 1e-16])
+        panel.set(xlim=(30.0, SMALLEST_ERROR / 3), xticks=[1.0, 1e-4, 1e-8, 1e-12, 1e-16])
         panel.set_title(title.replace(", ", "\n", 1))
     for panel in axes[-1]:
-        panel.set_xlabel(r"error of $F_t$ and its mean, over $F_C$")
+        panel.set_xlabel("error over $F_C$")
     style.note(axes.flat[0], "real time", 0.72, 0.6)
     figure.supylabel("CPU time over simulated time", fontsize=10)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)

@@ -211,7 +211,7 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
     "fixed step": FIXED_STEPS,
 }
 RATIO_COLUMNS = ["scene", "calls", *COLUMNS]
-PERIOD_COLUMNS = ["law", "limit", "held", "moving", "moving, CPU time"]
+PERIOD_COLUMNS = ["law", "limit", "held", "moving"]
 
 
 def ratio_cells(rows: Sequence[Mapping[str, Any]], error: float) -> list[list[str]]:
@@ -245,13 +245,13 @@ def with_table(text: str, headings: Sequence[str], rows: Sequence[Sequence[str]]
 
 
 def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """A line a law and limit: evaluations of the longest step, held and moving, and the latter's CPU time."""
+    """A line a law and limit: evaluations of the longest step, held and moving."""
     longest = [row for row in rows if row["periods"] == PERIODS[-1]]
     held, moving = ([row for row in longest if row["inputs"] == kind] for kind in ("held", "moving"))
     cells = []
     for one, other in zip(held, moving, strict=True):
         costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (one, other)]
-        cells.append([one["law"], one["limit"], *costs, f"{float(format(other['cpu_ratio'], '.2g')):.0f}"])
+        cells.append([one["law"], one["limit"], *costs])
     return cells
 
 
