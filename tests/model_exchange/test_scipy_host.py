@@ -26,7 +26,7 @@ def pulled() -> Callable[..., tuple[float, float]]:
 def test_it_prints_what_its_page_says(capsys: pytest.CaptureFixture[str]) -> None:
     runpy.run_path(str(PROGRAM), run_name="__main__")
     page = PROGRAM.with_name("README.md").read_text(encoding="utf-8")
-    assert f"It prints {capsys.readouterr().out.strip()}." in page
+    assert f"prints {capsys.readouterr().out.strip()}." in page
 
 
 def by_small_steps(law: str, sigma: float, V_1: float) -> float:

@@ -279,29 +279,31 @@ static double planned(const March* march) {
         h = fc_min(h, march->h);
     }
     const FcFriction* friction = friction_of(march);
-    const bool in_curve = kind == FC_SLIPS && fc_has_stribeck_curve(friction);
-    if ((kind == FC_SLIPS && !in_curve) || (kind == FC_RELAXES && march->h > 0.0)) {
+    const bool sees_curve =
+        kind != FC_STICKS && fc_has_stribeck_curve(friction) && isinf(march->part.in.length);
+    const bool is_proposed = kind == FC_SLIPS || (kind == FC_RELAXES && march->h > 0.0);
+    if (is_proposed && !sees_curve) {
         return h;
     }
     FcPhase phase;
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double w = march->at.v + at.V.x;
-    if (in_curve) { // one that breaks away inside may leave the curve before the first point
-        const double rate =
-            fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit)
-                .w;
-        const bool leaves = fabs(w) < FC_END_OF_CURVE * friction->V_S;
-        return leaves ? fc_min(h, fc_max(friction->V_S, 0.5 * fabs(w)) / (fabs(rate) + DBL_MIN)) : h;
+    const double w_rate =
+        fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit).w;
+    const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
+    if (sees_curve && fabs(w) < FC_BODY_MARGIN_OF_CURVE * FC_END_OF_CURVE * friction->V_S) {
+        // What begins inside, or turns there, may leave the curve before the first point.
+        h = fc_min(h, fc_time_to_move(fabs(w_rate), jerk, fc_max(friction->V_S, 0.5 * fabs(w))));
+    }
+    if (is_proposed) {
+        return h;
     }
     if (kind == FC_RELAXES) {
         return fc_min(h, fc_min(1.5 / ringing, 3.0 / (at.sigma * fabs(w) / at.limit + DBL_MIN)));
     }
     // A stuck bristle goes some radii of its bound: so far the points show a meeting.
-    const double w_rate =
-        fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit).w;
     const double way = FC_MAX_RADII * at.static_limit / at.sigma;
     h = fc_min(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
-    const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
     h = jerk > 0.0 ? fc_min(h, cbrt(6.0 * way / jerk)) : h;
     return march->is_known  ? fc_min(h, FC_BODY_MAX_PHASE / ringing)
            : march->h > 0.0 ? h
@@ -483,14 +485,18 @@ static void begin_slip(March* march) {
 static void use_layer(March* march, double w, double w_rate, double D) {
     const FcFriction* friction = friction_of(march);
     assert(march->at.kind == FC_RELAXES && D >= 0.0);
-    const double away = w_rate != 0.0 ? w / w_rate : 0.0; // s, from the reversal
-    double length = sqrt(2.0 * D / fabs(w_rate));
-    if (fc_has_stribeck_curve(friction)) {
-        length = fc_min(length, friction->V_S / fabs(w_rate));
+    const double H = march->interval->duration;
+    const double rate = fabs(w_rate);
+    const double V_S = fc_has_stribeck_curve(friction) ? friction->V_S : INFINITY;
+    double away = 0.0; // s, from the reversal
+    double length = INFINITY;
+    if (2.0 * D < H * H * rate || V_S < H * rate) { // either is shorter than the step
+        away = w / w_rate;
+        length = fc_min(sqrt(2.0 * D / rate), V_S / rate);
     }
-    const bool is_layer = length >= DBL_MIN && length < march->interval->duration && fabs(away) <= length;
+    const bool is_layer = length >= DBL_MIN && length < H && fabs(away) <= length;
     use_variable(march, march->t - fc_max(0.0, away), is_layer ? length : INFINITY);
-    march->h = is_layer ? march->interval->duration : 0.0;
+    march->h = is_layer ? H : 0.0;
 }
 
 static void pass_reversal(March* march, const FcNodes* nodes, const FcBodyPanel* panel) {
