@@ -106,8 +106,9 @@ static inline bool fc_is_bounded(const FcFriction* friction) {
 
 // The shape of the curve at the velocity V [m/s]: ln of (s(V) - 1) / (s(0) - 1).
 static inline double fc_stribeck_log_peak(const FcFriction* friction, double V) {
-    const double ratio = V / friction->V_S;
-    return -ratio * ratio;
+    const double farthest = 26.0 * friction->V_S; // where e^-676 of it is left: 0 in all digits
+    const double speed = fabs(V) > farthest ? farthest : fabs(V);
+    return -(speed / friction->V_S) * (speed / friction->V_S);
 }
 
 // Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a

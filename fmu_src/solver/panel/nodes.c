@@ -257,10 +257,9 @@ void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h,
     const FcFriction* friction = plane->scene->friction;
     if (fc_has_stribeck_curve(friction)) {
         const double R = friction->staticRatio;
-        const double least = -676.0; // a peak below e^-676 is 0 in all digits
         for (int i = 0; i < POINTS; i++) {
             const double log_peak = fc_stribeck_log_peak(friction, nodes->speed[i]);
-            nodes->limit[i] *= (1.0 + (R - 1.0) * fc_exp_less(log_peak > least ? log_peak : least, 0.0)) / R;
+            nodes->limit[i] *= (1.0 + (R - 1.0) * fc_exp_less(log_peak, 0.0)) / R;
         }
     }
 }
