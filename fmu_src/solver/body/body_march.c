@@ -40,6 +40,11 @@ static FcPlaneCoefficients coefficients(const March* march, FcPhase* phase) {
     return fc_plane_coefficients(march->plane, march->t, *phase);
 }
 
+// The rates at the present time, whose coefficients are known.
+static FcBodyRates rates_at(const March* march, const FcPlaneCoefficients* at, FcPhase phase) {
+    return fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at->sigma, at->static_limit);
+}
+
 static void use_variable(March* march, double center, double length) {
     assert(length > 0.0);
     march->part.in = (FcTimeMap){isfinite(length) ? center : 0.0, length};
@@ -135,8 +140,11 @@ static double place_of_meeting(const March* march, const FcNodes* nodes, const F
     double f[POINTS];
     const Close close = event_function(march, MEETING, nodes, panel, f);
     const double place = FC_FASTEST(fc_first_upcrossing)(f, close.rounding);
+    if (place <= 1.0 || f[LAST] <= f[LAST - 1]) {
+        return place;
+    }
     const double slope = slope_at_end(f);
-    if (place > 1.0 && slope < 0.0 && f[LAST] > f[LAST - 1]) {
+    if (slope < 0.0) {
         const double x = FC_RADAU.node[LAST] - FC_RADAU.node[LAST - 1];
         const double bend = (f[LAST] - f[LAST - 1] - slope * x) / (x * x);
         const double above = 0.25 * slope * slope / bend;
@@ -288,11 +296,10 @@ static double planned(const March* march) {
     FcPhase phase;
     const FcPlaneCoefficients at = coefficients(march, &phase);
     const double w = march->at.v + at.V.x;
-    const double w_rate =
-        fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit).w;
     const double jerk = drive->omega * drive->omega * fabs(drive->vibration.V_1); // m/s3, at most
     if (sees_curve && fabs(w) < FC_BODY_MARGIN_OF_CURVE * FC_END_OF_CURVE * friction->V_S) {
         // What begins inside, or turns there, may leave the curve before the first point.
+        const double w_rate = rates_at(march, &at, phase).w;
         h = fc_min(h, fc_time_to_move(fabs(w_rate), jerk, fc_max(friction->V_S, 0.5 * fabs(w))));
     }
     if (is_proposed) {
@@ -303,7 +310,7 @@ static double planned(const March* march) {
     }
     // A stuck bristle goes some radii of its bound: so far the points show a meeting.
     const double way = FC_MAX_RADII * at.static_limit / at.sigma;
-    h = fc_min(h, fc_time_to_move(fabs(w), fabs(w_rate), way));
+    h = fc_min(h, fc_time_to_move(fabs(w), fabs(rates_at(march, &at, phase).w), way));
     h = jerk > 0.0 ? fc_min(h, cbrt(6.0 * way / jerk)) : h;
     return march->is_known  ? fc_min(h, FC_BODY_MAX_PHASE / ringing)
            : march->h > 0.0 ? h
@@ -473,8 +480,7 @@ static void begin_slip(March* march) {
     march->h = 0.0;
     use_variable(march, 0.0, INFINITY);
     reach(march, march->t, march->sums.delta);
-    const FcBodyRates rate =
-        fc_body_rates(march->plane, march->body, &march->at, march->t, phase, at.sigma, at.static_limit);
+    const FcBodyRates rate = rates_at(march, &at, phase);
     if (!(rate.push > 0.0)) {
         begin_free(march, march->at.v + at.V.x, rate.w);
     }
@@ -670,8 +676,7 @@ static void begin(March* march, FcBristle bristle) {
     const FcPlaneCoefficients at = coefficients(march, &phase);
     march->at = (FcBodyStart){.kind = FC_STICKS, .delta = bristle.delta, .v = march->body->v};
     const double w = march->at.v + at.V.x;
-    const double w_rate =
-        fc_body_rates(march->plane, march->body, &march->at, 0.0, phase, at.sigma, at.static_limit).w;
+    const double w_rate = rates_at(march, &at, phase).w;
     begin_free(march, w, w_rate);
     const int side = fc_side(bristle);
     const bool touches = march->is_bounded && !fc_has_static_friction(friction_of(march)) &&
@@ -679,8 +684,7 @@ static void begin(March* march, FcBristle bristle) {
     if (fc_has_broken_away(friction_of(march), bristle.state) || touches) {
         march->at.kind = FC_SLIPS;
         march->at.side = side;
-        const FcBodyRates rate =
-            fc_body_rates(march->plane, march->body, &march->at, 0.0, phase, at.sigma, at.static_limit);
+        const FcBodyRates rate = rates_at(march, &at, phase);
         if (rate.push < 0.0 || (rate.push == 0.0 && side * rate.w < 0.0)) {
             begin_free(march, w, w_rate);
         }
