@@ -16,7 +16,7 @@ import numpy as np
 
 from frictioncontact import style
 from frictioncontact.advice.stuck_mass import GAUSS_SEIDEL, JACOBI
-from frictioncontact.fmu import FrictionFmu, Value, simulate
+from frictioncontact.fmu import FrictionFmu, Session, Value, simulate
 from tools.build import build_fmu
 from tools.reference import follow, scene_of
 
@@ -79,6 +79,23 @@ def exact(row: Pulled, step: float = H) -> dict[str, np.ndarray]:
     return {"time": time[every::every], "v": rows[:, 0], "F_t": rows[:, 1]}
 
 
+def by_master(
+    session: Session, m: float, pull: np.ndarray, step: float, output: str, master: str
+) -> np.ndarray:
+    """Rows of v [m/s], F_t, F_t_mean [N], at the start and after each step; pull - output [N] moves m [kg]."""
+    v, rows = 0.0, [(0.0, 0.0, 0.0)]
+    force = 1 + ("F_t", "F_t_mean").index(output)
+    for P in pull:
+        if master == JACOBI:
+            session.set("V", v)
+        v += step * (P - rows[-1][force]) / m
+        if master == GAUSS_SEIDEL:
+            session.set("V", v)
+        session.step(step)
+        rows.append((v, *session.read(("F_t", "F_t_mean"))))
+    return np.array(rows)
+
+
 def coupled(fmu: FrictionFmu, row: Pulled, master: str, step: float = H) -> dict[str, np.ndarray]:
     """The same by a master, with F_t_mean [N]; forces are held from the start of a step on, unless linear."""
     count = round(row.end / step)
@@ -89,17 +106,9 @@ def coupled(fmu: FrictionFmu, row: Pulled, master: str, step: float = H) -> dict
         scene = {**row.start_values, "body.m": row.m}
         found = simulate(fmu, scene, step, count, {"body.F": pull}, master == INSIDE, outputs=outputs)
         return {"v": found.pop("body.v"), **found}
-    v, force, rows = 0.0, 0.0, [(0.0, 0.0, 0.0)]
     with fmu.session(row.start_values) as session:
-        for P in pull[:-1]:
-            session.set("V", v)
-            v += step * (P - force) / row.m
-            if master == GAUSS_SEIDEL:
-                session.set("V", v)
-            session.step(step)
-            force = session.get(row.output)
-            rows.append((v, *session.read(("F_t", "F_t_mean"))))
-    return {"time": time, **dict(zip(("v", "F_t", "F_t_mean"), np.array(rows).T, strict=True))}
+        rows = by_master(session, row.m, pull[:-1], step, row.output, master)
+    return {"time": time, **dict(zip(("v", "F_t", "F_t_mean"), rows.T, strict=True))}
 
 
 def error(fmu: FrictionFmu, row: Pulled, master: str) -> float:

@@ -28,6 +28,7 @@ from tools.bench import figures
 from tools.bench.cases import Case, expected
 from tools.bench.driver import Bench, Outcome, failed, open_bench
 from tools.bench.exchange import MODEL_EXCHANGE
+from tools.bench.mass_inside import by_master
 from tools.bench.work_precision import Point, graded
 from tools.project import ROOT
 
@@ -116,18 +117,13 @@ def mastered(fmu: FrictionFmu, scene: Case, parts: int) -> Outcome:
     count, H = scene.count * parts, scene.step / parts
     samples = scene.inputs.get("body.F", np.full(scene.count + 1, held))
     pull = np.interp(np.arange(count) / parts, np.arange(scene.count + 1), samples)
-    v, read = 0.0, np.zeros((count + 1, 2))
-    used = int("vibration.V_1" in values)  # F_t, under a vibration F_t_mean
+    output = "F_t_mean" if "vibration.V_1" in values else "F_t"
     with fmu.session(values) as session:
         begin = time.process_time()
-        for k, P in enumerate(pull):
-            v += H * (P - read[k, used]) / m
-            session.set("V", v)
-            session.step(H)
-            read[k + 1] = session.read(("F_t", "F_t_mean"))
+        rows = by_master(session, m, pull, H, output, GAUSS_SEIDEL)
         cpu = time.process_time() - begin
         evaluations = session.get("solver.evaluations")
-    F_t, means = read[1:].reshape(scene.count, parts, 2).transpose(2, 0, 1)
+    F_t, means = rows[1:, 1:].reshape(scene.count, parts, 2).transpose(2, 0, 1)
     return Outcome(F_t[:, -1], means.mean(axis=1), cpu / scene.count, evaluations / scene.count)
 
 
