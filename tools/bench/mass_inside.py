@@ -82,7 +82,7 @@ def exact(row: Pulled, step: float = H) -> dict[str, np.ndarray]:
 def by_master(
     session: Session, m: float, pull: np.ndarray, step: float, output: str, master: str
 ) -> np.ndarray:
-    """Rows of v [m/s], F_t, F_t_mean [N], at the start and after each step; m [kg] under pull - output [N]."""
+    """Rows of v [m/s], F_t, F_t_mean [N], at the start and after each step of m [kg] under pull - output."""
     v, rows = 0.0, [(0.0, 0.0, 0.0)]
     force = 1 + ("F_t", "F_t_mean").index(output)
     for P in pull:
